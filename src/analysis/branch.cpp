@@ -108,7 +108,7 @@ private:
 
 class BranchWalk {
 public:
-    /// `values` of the parameter, increasing, two at least; all arguments must outlive the walk.
+    /// `values` of the parameter: increasing, at least two. All arguments must outlive the walk.
     BranchWalk(Circuit& circuit, std::span<const double> values)
         : circuit_(circuit), values_(values), range_(values.back() - values.front()), slack_(1e-12 * range_) {}
 
@@ -119,11 +119,11 @@ public:
         return followed(*first, tangent(*first, way * across()));
     }
 
-    /// Switches to the branch that begins there, as at a doubling with a circuit of twice the periods.
+    /// Switches to the branch that begins there, such as that of a doubling with a circuit of twice the periods.
     BranchPath walk_aside(double parameter) {
         const auto first = begun(parameter);
         if (!first) return path_;
-        // The disturbance that repeats itself.
+        // The direction of the disturbance that persists.
         const Eigen::Index n = units_.size();
         const Slopes slopes = scaled(first->slopes).leftCols(n);
         Vector aside = Vector::Zero(n + 1);
@@ -152,7 +152,7 @@ public:
 
 private:
     using Vector = Eigen::VectorXd;
-    using Slopes = Eigen::MatrixXd;  // derivatives of the residual by x and p
+    using Slopes = Eigen::MatrixXd;  // derivatives of the residual with respect to x and p
 
     /// A fixed point, with the derivatives of the residual.
     struct Spot {
@@ -172,7 +172,7 @@ private:
     };
     /// A point before the present one.
     struct Passed {
-        Vector x = {}, slope = {};  // slope by p
+        Vector x = {}, slope = {};  // slope with respect to p
         double p = 0;
     };
     struct Progress {
@@ -201,7 +201,7 @@ private:
         y << spot.x.cwiseQuotient(units_), spot.p / range_;
         return y;
     }
-    /// The derivatives of the scaled residual by the scaled unknowns.
+    /// The derivatives of the scaled residual with respect to the scaled unknowns.
     [[nodiscard]] Slopes scaled(const Slopes& slopes) const {
         Vector columns(units_.size() + 1);
         columns << units_, range_;
@@ -289,8 +289,8 @@ private:
         return spot;
     }
 
-    /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step. A short
-    /// step across a corner that was not rounded stands.
+    /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step.
+    /// `stands`: a short step across a corner that was not rounded is kept.
     enum class Bend { stands, retry, lost };
     Bend meet_bend(Progress& walk, double length, bool close) {
         const bool corner = close && length < corner_step;
@@ -715,7 +715,7 @@ private:
     double range_, slack_;
     Vector units_, greatest_;
     bool sharp_ = false;      // whether differences are of higher order
-    bool rough_ = false;      // whether a one-sided difference by p is enough, as for a guess
+    bool rough_ = false;      // whether a one-sided difference in p is accurate enough, as for a guess
     double orientation_ = 0;  // orientation of the walk's tangents
     double reach_ = 1;        // the present step: differences must not cross a corner beyond it
     std::vector<std::optional<Anchor>> anchors_;

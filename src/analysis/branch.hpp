@@ -17,7 +17,7 @@
 
 namespace dinal::analysis {
 
-/// The question at a parameter value. Called only between the least and the greatest requested value.
+/// The question at a parameter value; called only between the least and the greatest requested value.
 using Family = std::function<SteadyQuestion(double parameter)>;
 
 struct HeldMode;
@@ -28,7 +28,7 @@ public:
     struct Lap {
         Eigen::VectorXd to;
         bool finished = false;
-        std::optional<Eigen::MatrixXd> derivative = {};  ///< by the place; none: use differences
+        std::optional<Eigen::MatrixXd> derivative = {};  ///< with respect to the place; none: use differences
         MapStep step = {};                               ///< step of a period map
         double time = 0;
         std::shared_ptr<const HeldMode> mode = {};  ///< discrete state at the end, if known
@@ -43,13 +43,13 @@ public:
     /// The facts about the motion through a fixed point; status none if it cannot be run.
     virtual SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
                                 const Eigen::MatrixXd& derivative) = 0;
-    /// The scale of each number of a place.
+    /// The scale of each component of a place.
     [[nodiscard]] virtual Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
                                                 const SteadyMotion& motion) const = 0;
     /// The step of differences, in units.
     [[nodiscard]] virtual double difference() const { return 1e-5; }
-    /// Moves the section if the motion has drifted away from it, and returns these places converted; empty if all is
-    /// well, or if a place does not lead there.
+    /// Moves the section if the motion has drifted away from it, and returns these places in the new coordinates; empty
+    /// if no move is needed or possible.
     virtual std::optional<std::vector<Eigen::VectorXd>> recentred(
         const SteadyMotion& /*motion*/, const std::vector<std::pair<Eigen::VectorXd, double>>& /*places*/) {
         return {};
@@ -61,7 +61,7 @@ public:
     [[nodiscard]] const Eigen::VectorXd& first() const { return first_; }
     /// Returns whether the map covers half a period of a symmetric motion.
     [[nodiscard]] bool is_half() const { return half_; }
-    /// Returns whether it is a rest in an autonomous system, with multipliers over a stretch of time.
+    /// Returns whether it is a rest of an autonomous system, with multipliers over a fixed time.
     [[nodiscard]] bool stands() const { return stands_; }
     /// Returns whether it is a limit cycle, which may shrink to a rest.
     [[nodiscard]] bool cycles() const { return cycles_; }
@@ -88,11 +88,11 @@ private:
 std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 /// A circuit of theta, velocity and states: from period to period, from passage to passage of a cycle, or of a steadily
-/// sliding rest (return_circuit.cpp). Null if the motion lacks part of its state.
+/// sliding rest (return_circuit.cpp). Null if the motion does not contain its full state.
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 
-/// The same for limit cycles born at a Hopf point of a rest: the first place is on a cycle so small that it is linear.
+/// A circuit of limit cycles born at a Hopf point of a rest: the first place is on a cycle so small that it is linear.
 /// Null if disturbances of the rest do not rotate.
 std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p, const SteadyMotion& rest,
                                                  const motion::Monitor& monitor);
@@ -108,7 +108,7 @@ constexpr std::string_view name(BranchKind kind) {
 struct BranchPoint {
     double parameter = 0;
     SteadyMotion motion = {};
-    bool asked = false;  ///< whether it is at a requested value
+    bool asked = false;  ///< whether it is at a requested parameter value
     BranchKind kind = BranchKind::point;
 };
 

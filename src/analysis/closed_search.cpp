@@ -11,7 +11,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-constexpr double to_rounding = 1e-11;  // a residual of differences that no step makes smaller
+constexpr double to_rounding = 1e-11;  // limit of residuals that no step reduces, due to differences
 
 /// The shortest Newton step; it has no component in the null space of I - D.
 VectorXd newton_step(const Eigen::MatrixXd& D, const VectorXd& off) {
@@ -34,8 +34,8 @@ double size_of_step(const VectorXd& step) {
 }
 
 std::optional<Closed> ClosedSearch::at_once(const Return& from, int returns, bool waits) {
-    constexpr double anywhere = 1e6;
-    return newton(from, returns, anywhere, waits);
+    constexpr double any_distance = 1e6;
+    return newton(from, returns, any_distance, waits);
 }
 
 std::optional<Closed> ClosedSearch::follow(Return first, const std::vector<int>& counts) {
@@ -65,8 +65,8 @@ std::optional<Closed> ClosedSearch::closes(double near) {
         const double off = size_of_step(seen_[last].to - seen_[last - m].to);
         if (!is_within(off, near)) continue;
         ++tries;
-        constexpr double beside = 1;
-        auto found = newton(seen_[last], static_cast<int>(m), beside, false);
+        constexpr double short_distance = 1;
+        auto found = newton(seen_[last], static_cast<int>(m), short_distance, false);
         if (found && approaches(found->x, m)) return shortest(*found);
         if (found || !is_within(off, to_rounding)) continue;
         return itself(seen_[last], static_cast<int>(m));
@@ -74,15 +74,15 @@ std::optional<Closed> ClosedSearch::closes(double near) {
     return {};
 }
 
-/// The smallest number of returns: slow decay makes more returns look closer.
+/// The motion with the smallest number of returns; slow decay can make a multiple look closer.
 Closed ClosedSearch::shortest(Closed found) {
     for (int m = 1; m < found.returns; ++m) {
         if (found.returns % m != 0) continue;
         const Return back = map_(found.x, found.mode, m);
         maps_ += m;
-        constexpr double there = 1e-10;
+        constexpr double same_point = 1e-10;
         const double off = back.finished ? size_of_step(back.to - found.x) : 1;
-        if (!back.finished || back.mode != found.mode || !is_within(off, std::max(there, 10 * found.residual))) {
+        if (!back.finished || back.mode != found.mode || !is_within(off, std::max(same_point, 10 * found.residual))) {
             continue;
         }
         found.returns = m, found.period = back.time, found.residual = off;
@@ -95,11 +95,11 @@ Closed ClosedSearch::shortest(Closed found) {
 bool ClosedSearch::approaches(const VectorXd& x, std::size_t m) const {
     const std::size_t last = seen_.size() - 1;
     const double now = size_of_step(seen_[last].to - x), before = size_of_step(seen_[last - m].to - x);
-    constexpr double there = 1e-7, close = 0.3;
-    return is_within(now, there) || (now <= close && now < 0.98 * before);
+    constexpr double arrived = 1e-7, close = 0.3;
+    return is_within(now, arrived) || (now <= close && now < 0.98 * before);
 }
 
-/// Accepts a return within rounding, where differences are useless.
+/// Accepts a return that is exact to rounding, where differences are useless.
 std::optional<Closed> ClosedSearch::itself(const Return& from, int m) {
     const Return back = map_(from.to, from.mode, m);
     maps_ += m;
@@ -128,11 +128,11 @@ std::optional<ClosedSearch::Try> ClosedSearch::nearer(const Try& now, const Vect
 std::optional<Closed> ClosedSearch::newton(const Return& from, int m, double farthest, bool waits) {
     constexpr double exactly = 2e-15;  // smaller residuals and steps are rounding,
     constexpr double nothing = 1e-14;
-    constexpr double enough = 1e-9;  // and this is accepted where rounding prevents smaller ones
+    constexpr double enough = 1e-9;  // acceptable if rounding prevents smaller ones
     auto now = at(from.to, from.mode, m);
     std::optional<Eigen::MatrixXd> D;
     for (int i = 0, most = waits ? 60 : 14; now && i < most && now->residual > exactly; ++i) {
-        const bool kept = !now->back.derivative && D;  // from a place before
+        const bool kept = !now->back.derivative && D;  // whether the derivative is that of an earlier place
         if (now->back.derivative) {
             D = now->back.derivative;
         } else if (!D && now->keeps_mode()) {

@@ -12,11 +12,12 @@ namespace dinal::analysis {
 class ClosedSearch {
 public:
     using Return = Map::Return;
-    /// `maps` counts returns; `longest`: most returns after which a motion may close.
+    /// `maps` is increased by the number of returns computed; `longest` is the greatest number of returns after which a
+    /// motion may close.
     ClosedSearch(Map& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
 
-    /// Tries Newton's method for this number of returns from here at once. `waits`: makes returns where no step helps,
-    /// as each is nearer in a system that contracts.
+    /// Tries Newton's method from `from` for motions that close after `returns`. If `waits`, returns are computed when
+    /// no Newton step helps, because each is closer in a contracting system.
     std::optional<Closed> at_once(const Return& from, int returns, bool waits);
 
     /// Makes returns until the motion closes; checks after each of `counts`.
@@ -42,7 +43,7 @@ private:
     std::optional<Closed> itself(const Return& from, int m);
     std::optional<Closed> newton(const Return& from, int m, double farthest, bool waits);
     std::optional<Try> at(const Eigen::VectorXd& x, const std::optional<HeldMode>& mode, int m);
-    /// The result of this part of a Newton step, if it is nearer.
+    /// Tries fractions of a Newton step; empty if none reduces the residual.
     std::optional<Try> nearer(const Try& now, const Eigen::VectorXd& step, int m);
     [[nodiscard]] bool is_within(double residual, double tolerance) const {
         return residual <= tolerance || residual <= map_.rounding();

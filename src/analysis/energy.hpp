@@ -30,7 +30,7 @@ struct Balance {
     Work work;
     Stored change;
     Balance() = default;
-    /// Springs with a memory store what their work says.
+    /// The springs of sliders store the work `kept`, as their energy does not follow from the state.
     Balance(const Work& done, const Stored& by_state) : work(done), change(by_state) { change.spring += done.kept; }
     /// The closure error: input - (kinetic + spring + viscous + dry + impacts).
     [[nodiscard]] double error() const {

@@ -20,7 +20,7 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr std::size_t most_stops = 5;  // stops reported one by one; of more, these:
+constexpr std::size_t most_stops = 5;  // the number of stops reported one by one; if there are more, only these:
 constexpr std::size_t first_stops = 2, last_stops = 2;
 constexpr std::size_t most_turns = 4, most_slides = 3;
 
@@ -31,7 +31,7 @@ bool several(const RunToTell& whole) {
     return whole.system.joints.size() > 1;
 }
 
-bool tells_all(const RunToTell& whole) {
+bool covers_all_bodies(const RunToTell& whole) {
     return several(whole) && !whole.joint;
 }
 
@@ -76,14 +76,15 @@ public:
             if (s.stuck && s.begun_by) stops_.push_back(&s);
         }
         if ((stretches_.size() == 1 && stuck_ > 0) || (run_.on_belt && run_.course == nullptr))
-            return;  // its turns are unknown
+            return;  // the turns are unknown
         const auto before = [](const model::Event& event, double t) { return event.t < t; };
         for (const Stretch& s : swings_) {
             half_cycles_ += s.stuck ? 0 : 1;
             if (!run_.on_belt || !s.ended_by) continue;
             const double near = 1e-9 * T0_;
             const auto end = run_.events.end(), next = std::lower_bound(run_.events.begin(), end, s.to - near, before);
-            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);  // otherwise it is that event
+            // otherwise the end is that event
+            if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);
         }
         std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
     }
@@ -126,7 +127,7 @@ private:
     [[nodiscard]] double pull_at(double theta, double M, double t) const {
         return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
-    /// -I a - I vb' - C vb, limits from the right.
+    /// The torque of a moving support and belt on a mass at rest, -I a - I vb' - C vb; limits from the right.
     [[nodiscard]] double around(double t) const {
         double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;
@@ -187,7 +188,7 @@ private:
         const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
         if (std::find(redundant.begin(), redundant.end(), own) != redundant.end()) {
             say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
-                "with the least sum of squares are told.");
+                "with the least sum of squares are given.");
         }
         end_paragraph();
         return std::move(text_);
@@ -257,7 +258,7 @@ private:
         }
         tell_law();
         tell_walls();
-        if (!tells_all(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
+        if (!covers_all_bodies(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
         if (!is_link_) tell_load();
         tell_surroundings();
         if (own_rule_) say("{}", own_rule_->setting);
@@ -670,11 +671,11 @@ private:
     void tell_step(const Swings& last) {
         if (last.trend == Trend::irregular) return;
         const auto& [a, b, c] = last.amplitudes;
-        constexpr double rule = 1e-3;
+        constexpr double most_irregular = 1e-3;
         const char* more = c > b ? "more" : "less";
-        if (std::fabs((c - b) - (b - a)) <= rule * std::fabs(c - b)) {
+        if (std::fabs((c - b) - (b - a)) <= most_irregular * std::fabs(c - b)) {
             add(", {:.5g} {} each time", std::fabs(c - b), more);
-        } else if (std::fabs(c / b - b / a) <= rule * std::fabs(c / b - 1)) {
+        } else if (std::fabs(c / b - b / a) <= most_irregular * std::fabs(c / b - 1)) {
             add(", {:.5g} times as much each time", c / b);
         }
     }
@@ -705,7 +706,7 @@ public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
     std::string build_text(const std::vector<Energy>& energies) {
-        const bool all = tells_all(whole_);
+        const bool all = covers_all_bodies(whole_);
         if (all) tell_setting();
         end_paragraph();
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {

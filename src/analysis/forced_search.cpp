@@ -34,7 +34,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
         if (!now) return {};
         ranges.push_back(range());
     }
-    // A beating motion has equal maxima in both halves, a creeping one equal ranges.
+    // Beats have equal maxima in both halves; a creeping motion has equal ranges.
     const bool widens = ranges[2] > 1.3 * ranges[1] && ranges[1] > 1.1 * ranges[0];
     const bool grows = widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0];
     if (is_free() ? facts_.growth > 0 : grows && !is_bounded()) {
@@ -45,7 +45,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
     return now;
 }
 
-/// The growth in one of the last periods. Of a free body it is 0 unless it was as fast before.
+/// The growth over one of the last periods. For a free body it is 0 unless it has grown as fast before.
 double ForcedSearch::growth_of(const std::vector<Map::Return>& seen) const {
     constexpr std::size_t span = 20;
     const std::size_t n = seen.size();

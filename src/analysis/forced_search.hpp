@@ -1,5 +1,5 @@
-// Finds the motion that a run leads to and that repeats with what drives it, over any map from period to period: by
-// Newton's method at once where the system contracts, otherwise from returns that come near to themselves.
+// Finds the periodic motion that a run of a driven system approaches, by any period map: by Newton's method from the
+// start if the system contracts, otherwise from returns that nearly repeat.
 #pragma once
 
 #include <optional>
@@ -19,27 +19,28 @@ public:
 protected:
     ForcedSearch() = default;
 
-    /// Sets facts_. `at_once`: whether to try Newton's method from the start. If no approach to a motion was seen,
-    /// returns where the run has got to.
+    /// Sets facts_. `at_once`: whether to try Newton's method from the start. If the run did not approach a motion,
+    /// returns the place it has reached.
     std::optional<Map::Return> search(const SteadyQuestion& question, bool at_once);
-    /// Tries Newton's method from there, as the approach may be slow. If a number of `periods` is given, not 0, a
-    /// motion on which no run stays is better than none, also one near the start.
+    /// Tries Newton's method from `last`, as the approach may be slow. If `periods` is not 0, an unstable motion of
+    /// this period is accepted, also one near the start.
     void look_beside(const Map::Return& last, int periods);
 
     [[nodiscard]] virtual Map& map() = 0;
-    /// The place where the search begins, in units of the motion about there; none if it could not be followed.
+    /// Runs the beginning and returns the first place, scaled by the motion; empty if the run failed.
     virtual std::optional<Map::Return> begin() = 0;
-    /// The same for a later place.
+    /// Returns a later place with the scale of the motion there.
     virtual std::optional<Map::Return> measured(const Map::Return& from) = 0;
-    /// The range of the last period that was measured.
+    /// The range of the last measured period.
     [[nodiscard]] virtual double range() const = 0;
     /// The size of a motion at this place.
     [[nodiscard]] virtual double size_at(const Map::Return& place) const = 0;
-    /// Completes the answer for a closed motion; returns false if it is none, or no run stays on it and `any` is false.
+    /// Completes the answer for a closed motion. Returns false if it does not qualify, or is unstable and `any` is
+    /// false.
     virtual bool complete(const Closed& found, bool any) = 0;
-    /// Returns whether no motion can grow for ever.
+    /// Returns whether every motion stays bounded.
     [[nodiscard]] virtual bool is_bounded() const = 0;
-    /// Returns whether nothing holds the angle: it may drift for ever, which is growth.
+    /// Returns whether nothing restores the angle, which may then drift for ever and counts as growing.
     [[nodiscard]] virtual bool is_free() const = 0;
 
     SteadyMotion facts_;
@@ -47,7 +48,7 @@ protected:
 private:
     [[nodiscard]] double growth_of(const std::vector<Map::Return>& seen) const;
     void note_failure(model::Outcome outcome, const std::vector<Map::Return>& seen);
-    /// The greatest size among these places.
+    /// The greatest size among the places `from` to `until` - 1.
     [[nodiscard]] double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
 };
 

@@ -11,7 +11,7 @@
 namespace dinal::analysis {
 namespace {
 
-/// The most rows computed by rotation from the row before, if times are even; limits its rounding.
+/// The most rows computed by rotation from the previous row, for even times; limits the rounding error.
 constexpr int turned_on = 32;
 
 class DecayRows {
@@ -100,7 +100,7 @@ Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& 
         const theory::Extreme last = motion.extreme(n);
         const double end = first.t + (n + 1) * half;
         const bool from_below = (first.theta < 0) != (std::fmod(n, 2) != 0);
-        // A row put before its swing by rounding still belongs to it.
+        // A row that rounding places before its swing still belongs to it.
         rows.swing(from_below ? -shift : shift, last.t, {last.theta, 0},
                    std::max(end, std::nextafter(rows.next_time(), 1e300)));
     }

@@ -10,9 +10,9 @@
 
 namespace dinal::analysis {
 
-/// theta at these increasing times, from `initial` at the first. Requires a linear spring, Coulomb friction and less
-/// than critical damping. With `rests_at` the mass rests at that extreme (0: the first) regardless of the friction
-/// limit.
+/// Returns theta at these increasing times, starting from `initial` at the first one. Requires a linear spring, Coulomb
+/// friction and less than critical damping. With `rests_at` the mass rests at that extreme (0: the first) regardless of
+/// the friction limit.
 Eigen::VectorXd free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
                            std::optional<double> rests_at = {});
 

@@ -42,7 +42,7 @@ std::optional<Fundamental> by_friction(const SteadyQuestion& question, const Ste
         }
     }
     const std::complex<double> left = M_wave - sum_wave * (2 / length);
-    constexpr double least_left = 0.02;  // part of M: keeps an error of 1e-14 of M below 1e-12 of theta
+    constexpr double least_left = 0.02;  // fraction of M: an error of 1e-14 of M stays below 1e-12 of theta
     if (!(std::abs(left) > least_left * std::abs(M_wave))) return {};
     Fundamental found;
     found.wave =

@@ -34,7 +34,7 @@ std::optional<LeastSquares> fit(const GeneralQuestion& question, const Eigen::Ve
     return least_squares(model, question.measured.head(count), start, question.scale, steps);
 }
 
-/// The beginning of the record first, so that no swing is taken for the next one.
+/// Fits the beginning of the record first, so that no swing is mistaken for its neighbour.
 std::optional<LeastSquares> fit_from(const GeneralQuestion& question, Eigen::VectorXd start) {
     constexpr int few = 12, many = 60;
     for (const Eigen::Index count : question.stages) {
@@ -86,7 +86,7 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     found.silent = covariance.silent;
     found.open = covariance.open;
     for (Eigen::Index i = 0; i < n; ++i) {
-        const double least = 1e-15 * std::fabs(found.value[i]);  // some ulps
+        const double least = 1e-15 * std::fabs(found.value[i]);  // a few ulps
         found.error[i] = std::max(least, std::sqrt(covariance.matrix(i, i)));
     }
     return found;

@@ -1,4 +1,4 @@
-// Any parameters of anything that can be run, fitted to any measured columns: from a guess, by least squares.
+// Fits any parameters of any model to any measured columns by least squares, from a guess.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,30 +12,30 @@
 namespace dinal::analysis {
 
 struct GeneralQuestion {
-    /// The first so many of the predicted numbers for these parameters; none where nothing can be predicted.
+    /// The first `count` predicted numbers for these parameters; empty if the model has no prediction.
     std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& parameters, Eigen::Index count)> model;
-    Eigen::VectorXd measured;          ///< in order of time, in units of what its column varies by
-    std::vector<int> columns;          ///< of each number
-    std::vector<Eigen::Index> stages;  ///< beginnings of the record that are fitted first
+    Eigen::VectorXd measured;          ///< in order of time, scaled by the variation of their column
+    std::vector<int> columns;          ///< column of each number
+    std::vector<Eigen::Index> stages;  ///< lengths of the initial parts of the record that are fitted first
     Eigen::VectorXd start;
     FitScale scale;
-    double least_noise = 0;  ///< a residual that is less is rounding
-    /// The terms that the model may lack at these parameters.
+    double least_noise = 0;  ///< smaller residuals count as rounding
+    /// The terms that the model may lack at these parameters; see misfit.hpp.
     std::function<std::vector<Structure>(const Eigen::VectorXd& parameters, double noise, bool is_white)> structures;
-    std::vector<std::vector<double>> other_starts;  ///< of each parameter: where a search may begin, too
+    std::vector<std::vector<double>> other_starts;  ///< further starting values for each parameter
 };
 
 struct GeneralFit {
-    Eigen::VectorXd value, error, predicted;  ///< error: also of what is silent, where it bounds little
-    std::vector<bool> silent, open;           ///< open: next to nothing bounds it
+    Eigen::VectorXd value, error, predicted;  ///< `error` is finite even for silent parameters
+    std::vector<bool> silent, open;           ///< silent: not determined by the data; open: practically without bounds
     double noise = 0;                         ///< standard deviation of the residual
-    double widening = 1;                      ///< of the errors, because the residual is alike from sample to sample
+    double widening = 1;                      ///< factor of the errors due to correlated residuals
     std::optional<Misfit> misfit = {};
 
     [[nodiscard]] bool is_wrong() const { return misfit && misfit->is_sure; }
 };
 
-/// None when nothing can be predicted from the start.
+/// Empty if the model has no prediction at the start.
 std::optional<GeneralFit> general_fit(const GeneralQuestion& question);
 
 }  // namespace dinal::analysis

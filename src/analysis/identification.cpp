@@ -35,8 +35,8 @@ double at(const Parameters& p, Unknown which) {
 constexpr std::array<Unknown, unknown_count> all_unknowns{
     Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
 
-/// It is not given, and the record may tell it: in a free decay I sets the unit of torque, and Re shows nowhere but
-/// where the mass rests.
+/// Returns whether the parameter is fitted. A free decay does not determine I, which sets the unit of torque, nor Re,
+/// which acts only at the final rest.
 bool is_sought(const IdentifyQuestion& question, Unknown which) {
     const auto is_given = [&](Unknown one) { return question.given[static_cast<std::size_t>(one)].has_value(); };
     if (is_given(which)) return false;
@@ -50,20 +50,19 @@ bool is_same(const LeastSquares& a, const LeastSquares& b) {
     return std::fabs(a.sum - b.sum) <= same_fit * a.sum;
 }
 
-/// In standard deviations of noise: what is left after a fit that is so much more alike from sample to sample is looked
-/// at again.
+/// Number of standard deviations of neighbour correlation above which a fit is retried from other starts.
 constexpr double suspected = 3;
 
-/// A residual that is less, in ranges of the record, is rounding.
+/// Smaller residuals, relative to the range of the record, count as rounding.
 constexpr double least_noise = 1e-7;
 
-/// A parameter that is held by this stays where it is.
-constexpr double firmly = 1e8;
+/// The weight in FitScale::hold that fixes a parameter.
+constexpr double firm_weight = 1e8;
 
-/// A fit of a free decay that rests at a turn; without one, where its own friction stops it.
+/// A fit of a free decay with a prescribed turn of rest; without one, friction stops the mass.
 struct Rest {
     LeastSquares fit;
-    double breakaway = 0;  // Re/k; 0: Rd/k
+    double breakaway = 0;  // Re/k; 0: it equals Rd/k
     std::optional<double> turn = {};
     Covariance covariance = {};
     Eigen::MatrixXd slopes = {};
@@ -79,7 +78,7 @@ double dry_of(const Parameters& p) {
     return at(p, Unknown::Rd) / at(p, Unknown::k);
 }
 
-/// S' = slope S - lost
+/// Fits S' = slope S - lost to successive swings.
 std::pair<double, double> line_through(const std::vector<double>& swings) {
     const auto n = static_cast<Eigen::Index>(swings.size() - 1);
     Eigen::MatrixXd A(n, 2);
@@ -92,13 +91,13 @@ std::pair<double, double> line_through(const std::vector<double>& swings) {
     return {x[0], x[1] * swings.front()};
 }
 
-/// The decay as the half-cycle map has it; none where nothing swings.
+/// The parameters of the half-cycle map of a decay; empty if the system does not oscillate.
 struct Decay {
     theory::Extreme first;
-    double extremes = 0;  // infinity when it swings for ever
+    double extremes = 0;  // number of extremes; infinite if it never stops
     double zeta = 0, shift = 0;
 
-    /// The amplitude at a turn, where the mass may be made to rest; negative if the turn lies beyond the middle.
+    /// The amplitude at a turn at which the mass may be made to rest; negative if the turn lies beyond the middle.
     [[nodiscard]] double size_at(double turn) const {
         const double theta = theory::HalfCycles(zeta, shift).after(turn, first.theta);
         const bool below = (first.theta < 0) != (std::fmod(turn, 2) != 0);
@@ -111,13 +110,13 @@ std::optional<Decay> decay_of(const Parameters& p) {
                                                  .stiffness = at(p, Unknown::k),
                                                  .damping = at(p, Unknown::C),
                                                  .kinetic_friction = at(p, Unknown::Rd)});
-    constexpr double swings = 0.99;
-    if (!system || system->damping_ratio() > swings) return {};
+    constexpr double most_damping = 0.99;
+    if (!system || system->damping_ratio() > most_damping) return {};
     const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
     return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
 }
 
-/// The measured angles, and what they show without a system.
+/// The measured angles, with properties that need no model.
 struct Record {
     explicit Record(const IdentifyQuestion& question)
         : theta(question.theta.size()),
@@ -130,26 +129,26 @@ struct Record {
         turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
     }
 
-    /// Returns whether the last samples differ by no more than noise.
+    /// Returns whether the last samples are equal to within noise.
     [[nodiscard]] bool ends_at_rest() const {
         const Eigen::Index n = theta.size();
         const auto tail = theta.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
         return tail.maxCoeff() - tail.minCoeff() <= 8 * noise + 1e-6 * range;
     }
-    /// The natural frequency of a swing in each sample.
+    /// The natural frequency of one full swing per sample.
     [[nodiscard]] double highest_omega0() const {
-        constexpr double a_sample = 2 * std::numbers::pi;
-        return a_sample * static_cast<double>(theta.size() - 1) / span;
+        constexpr double whole_turn = 2 * std::numbers::pi;
+        return whole_turn * static_cast<double>(theta.size() - 1) / span;
     }
 
     Eigen::VectorXd theta;
     CutOff cut;
     double range, span, noise;
-    double step;                     // of the instrument; 0 if it shows none
-    std::vector<std::size_t> turns;  // places of the turning points
+    double step;                     // resolution of the instrument; 0 if none is visible
+    std::vector<std::size_t> turns;  // indices of the turning points
 };
 
-/// Fits from several starts, of which the best one is kept.
+/// Fits from several starts and keeps the best result.
 class Identification {
 public:
     Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
@@ -200,7 +199,7 @@ private:
         if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
         return all;
     }
-    /// The fitted ones of these parameters. Re is fitted as Re - Rd: below Rd nothing would depend on it.
+    /// Extracts the fitted parameters. Re is fitted as Re - Rd, because values below Rd have no effect.
     [[nodiscard]] Eigen::VectorXd fitted_of(const Parameters& all) const {
         Eigen::VectorXd p(count());
         for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
@@ -211,17 +210,17 @@ private:
         return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
     }
 
-    /// Each swing has samples, and the first velocity is one that the samples show: beyond that, where a search may fly
-    /// to, runs have no end and fits no meaning.
+    /// Returns whether the record resolves the motion: each swing has samples, and the initial velocity is not too
+    /// high. A search may leave this region, where runs take too long and fits are meaningless.
     [[nodiscard]] bool is_seen(const Parameters& p) const {
         const double highest = record_.highest_omega0();
-        constexpr double most = 10;  // ranges of the record from one sample to the next
+        constexpr double most = 10;  // ranges of the record between two samples
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
         return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
                (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * record_.range * highest);
     }
 
-    /// The motion with these parameters as the instrument shows it.
+    /// The motion with these parameters, clipped like the record.
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows) {
         return shown(moved(p, rows));
     }
@@ -251,7 +250,7 @@ private:
         return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
     }
 
-    /// A run with a row for each of the first samples; none if it ends before them.
+    /// A run with a row at each of the first `rows` samples; empty if it ends early.
     [[nodiscard]] std::optional<motion::Run> driven(const model::Oscillator& system, const model::Excitation& M,
                                                     const model::State& initial, std::size_t rows) {
         const std::vector<double> times(question_.t.begin(), question_.t.begin() + static_cast<std::ptrdiff_t>(rows));
@@ -286,7 +285,7 @@ private:
         FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
                        Eigen::VectorXd::Zero(count())};
         const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
-        constexpr double loosely = 3;
+        constexpr double loose_factor = 3;
         for (Eigen::Index i = 0; i < count(); ++i) {
             const Unknown which = unknowns_[static_cast<std::size_t>(i)];
             switch (which) {
@@ -301,7 +300,7 @@ private:
                 case Unknown::C:
                     scale.typical[i] = 0.01 * k / omega;
                     scale.least[i] = 0;
-                    scale.whole[i] = std::max(2 * k / omega, at(start, which));  // critical
+                    scale.whole[i] = std::max(2 * k / omega, at(start, which));  // critical damping
                     break;
                 case Unknown::Rd:
                 case Unknown::Re:
@@ -312,7 +311,7 @@ private:
                 case Unknown::theta0:
                 case Unknown::offset:
                     scale.typical[i] = 0.1 * record_.range;
-                    scale.hold[i] = record_.noise / (loosely * record_.range);
+                    scale.hold[i] = record_.noise / (loose_factor * record_.range);
                     scale.whole[i] = record_.range;
                     break;
                 case Unknown::velocity0:
@@ -324,7 +323,7 @@ private:
         return scale;
     }
 
-    /// First the beginning of the record, so that no swing is taken for the next one, then all of it.
+    /// Fits the beginning of the record first, so that no swing is mistaken for its neighbour, and then all of it.
     void try_from(const Parameters& start) {
         base_ = start;
         Eigen::VectorXd p = fitted_of(start);
@@ -345,7 +344,7 @@ private:
         if (some && (!moving_ || (all && best_ && all->sum <= best_->sum))) moving_ = some->parameters;
     }
 
-    /// A search may fly to a velocity that is gone between two samples: so it also begins with a mass that was let go.
+    /// Also searches from initial velocity 0, because a search may end at a velocity that decays between two samples.
     void try_let_go(const std::vector<Parameters>& starts) {
         if (is_given(Unknown::velocity0)) return;
         const Eigen::Index place = place_of(Unknown::velocity0);
@@ -355,7 +354,7 @@ private:
             at(base_, Unknown::velocity0) = 0;
             const FitScale scale = scale_of(base_);
             FitScale held = scale;
-            held.hold[place] = firmly * record_.range / scale.typical[place];
+            held.hold[place] = firm_weight * record_.range / scale.typical[place];
             const auto let_go = fit(fitted_of(base_), question_.t.size(), held, 40);
             const auto all = let_go ? fit(let_go->parameters, question_.t.size(), scale, 40) : std::nullopt;
             if (all && all->sum < best_->sum) moving_ = all->parameters;
@@ -374,9 +373,8 @@ private:
         best_breakaway_ = breakaway_;
     }
 
-    /// The numbers of samples that are fitted one after another. A fit of a longer part takes no swing for the next
-    /// one, because it begins with the fit of a shorter part. A free decay ends at its last turn, behind which it may
-    /// rest.
+    /// The numbers of samples to fit, one after another. Each fit starts from that of a shorter part, so no swing is
+    /// mistaken for its neighbour. A free decay ends at its last turn, after which it may rest.
     [[nodiscard]] std::vector<std::size_t> stages(double period) const {
         std::vector<std::size_t> rows;
         const double first = question_.t.front();
@@ -403,13 +401,14 @@ private:
             record_.theta.size() - static_cast<Eigen::Index>(record_.cut.at_low + record_.cut.at_high) - count();
         return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, told)));
     }
-    /// As good as the noise, which is known to a few parts of its root from a record of this length.
+    /// Returns whether the residual is no larger than the noise, whose estimate is accurate to a few percent for such a
+    /// record.
     [[nodiscard]] bool is_settled() const {
         return deviation() <= std::max(1.06 * record_.noise, 1e-9 * record_.range);
     }
     [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
 
-    // ---- where to start: from the extremes of a free decay, or by the weak form of the driven equation
+    // ---- starting values: from the extremes of a free decay, or by the weak form of the driven equation
 
     [[nodiscard]] Parameters common_start(double omega0, double zeta, double dry, double zero) const {
         Parameters p{};
@@ -420,19 +419,20 @@ private:
         at(p, Unknown::Rd) = given(Unknown::Rd, dry * at(p, Unknown::k));
         at(p, Unknown::Re) = given(Unknown::Re, at(p, Unknown::Rd));
         at(p, Unknown::offset) = given(Unknown::offset, zero);
-        const double a_while = 0.15 / omega0;  // so long it is about straight
+        const double a_while = 0.15 / omega0;  // the motion is nearly straight for this time
         const auto bent = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
         const Tangent tangent =
             first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
         at(p, Unknown::theta0) = given(Unknown::theta0, tangent.value - at(p, Unknown::offset));
-        // A slope that noise could have made is none: a mass that stands is mostly one that was let go.
+        // A slope within the noise counts as 0, as most masses start at rest.
         const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
         const double unsure = 3 * record_.noise * std::sqrt(12 / samples) / a_while;
         at(p, Unknown::velocity0) = given(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
         return p;
     }
 
-    /// The half-cycle map X' - zero = -q (X - zero) -+ (1 + q) dry gives the rest of what the turning points say.
+    /// The half-cycle map X' - zero = -q (X - zero) -+ (1 + q) dry determines the remaining starting values from the
+    /// turning points.
     [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const {
         const double ratio = -std::log(q) / std::numbers::pi, zeta = ratio / std::hypot(1, ratio);
         double zero = 0;
@@ -504,7 +504,7 @@ private:
             const std::size_t n = edges[i + 1] - edges[i];
             const double rise = question_.theta[edges[i + 1]] - question_.theta[edges[i]];
             if (n < 8 || std::fabs(rise) < 0.04 * record_.range) continue;
-            const std::size_t margin = n / 10;  // about a turn or a stop the sign of the velocity is not sure
+            const std::size_t margin = n / 10;  // near a turn or stop the sign of the velocity is uncertain
             const std::size_t begin = edges[i] + margin, end = edges[i + 1] - margin, third = (end - begin) / 3;
             const double sign = rise > 0 ? 1 : -1;
             add_window(begin, end, sign, rows);
@@ -513,7 +513,7 @@ private:
                 add_window(begin + third, end, sign, rows);
             }
         }
-        // I, k, C, Rd and k offset; what is given goes to the other side.
+        // The unknowns are I, k, C, Rd and k offset; given values move to the right-hand side.
         const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
         std::vector<std::size_t> columns;
         for (std::size_t c = 0; c < 5; ++c) {
@@ -533,7 +533,7 @@ private:
                 for (std::size_t c = 0; c < 5; ++c) b[i] -= row[c] * x[c];
                 for (Eigen::Index j = 0; j < m; ++j) A(i, j) = row[columns[static_cast<std::size_t>(j)]];
             }
-            // Columns of one length: units must not decide which of them determines nothing.
+            // Columns are normalised, so that units do not affect which of them counts as dependent.
             const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
             const Eigen::VectorXd solved = algebra::solve_least_squares(A * lengths.cwiseInverse().asDiagonal(), b);
             for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
@@ -542,7 +542,7 @@ private:
                                  ? std::numbers::pi * static_cast<double>(record_.turns.size() - 1) /
                                        (question_.t[record_.turns.back()] - question_.t[record_.turns.front()])
                                  : 2 * std::numbers::pi / record_.span;
-        // If noise or stops leave no estimate: a system of the size of the record.
+        // If noise or stops prevent an estimate, use a system with the scales of the record.
         double most = 0;
         for (const double t : question_.t) most = std::max(most, std::fabs(question_.M->value(t)));
         if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / record_.range;
@@ -562,11 +562,12 @@ private:
         return p;
     }
 
-    /// On a stretch without a turn, with a bump w that is 0 with its first two slopes at both ends:
-    /// I int w'' theta - C int w' theta + k int w (theta - offset) + s Rd int w = int w M.
+    /// Adds the weak form on an interval without a turn, with a bump w whose value and first two derivatives vanish at
+    /// both ends: I int w'' theta - C int w' theta + k int w (theta - offset) + s Rd int w = int w M.
     void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const {
         const model::Excitation& M = *question_.M;
-        const bool asks_all = std::isfinite(M.most()) && !M.has_feedback();  // its jumps are known, and it costs little
+        // the jumps of M are known, and it is cheap to evaluate
+        const bool asks_all = std::isfinite(M.most()) && !M.has_feedback();
         const double a = question_.t[first], length = question_.t[last] - a;
         std::array<double, 6> row{};
         for (std::size_t i = first; i <= last; ++i) {
@@ -591,14 +592,14 @@ private:
         rows.push_back(row);
     }
 
-    // ---- at which turn a free decay comes to rest
+    // ---- the turn at which a free decay comes to rest
     //
-    // The number of swings before the rest depends on the parameters, and each number is a valley of its own,
-    // whose walls the many samples at rest make steep. When the number is prescribed the place of rest is a smooth
-    // function of the parameters: so each number near the best one is fitted by itself, and counts when some Re >= Rd
-    // lets the mass move at the turn before and holds it at this one. The sum of squares is not all: a way to come to
-    // rest that is possible in a tiny part of the space of parameters only was a tiny part as likely before, so each
-    // counts by exp(-sum / 2 noise^2) times the volume that its errors leave open.
+    // Each number of swings before rest is a separate valley of the sum of squares, with steep walls due to the many
+    // samples at rest. With a prescribed number, the place of rest is a smooth function of the parameters. So each
+    // number near the best one is fitted separately. It counts if some Re >= Rd lets the mass pass the previous turn
+    // and holds it at this one. Besides the sum of squares the prior probability matters: a way to rest that needs a
+    // tiny part of the parameter space is unlikely. So each is weighted by exp(-sum / 2 noise^2) times the volume of
+    // its errors.
 
     void try_rests() {
         if (!record_.ends_at_rest()) return;
@@ -606,11 +607,11 @@ private:
         try_rest_at(std::numeric_limits<double>::infinity());
         const auto decay = decay_of(filled_best());
         if (!decay) return;
-        // The last turn that stands out of the noise is the first where it may rest.
+        // The mass may rest at the earliest at the last turn that exceeds the noise.
         const double seen = std::max(0.0, static_cast<double>(record_.turns.size()) - 2);
         const double middle = std::isfinite(decay->extremes) ? decay->extremes - 1 + turns_before(filled_best()) : seen;
-        // As far to both sides as the record leaves it open, and some turns more.
-        constexpr double open = 12;
+        // Tries turns to both sides as far as the record permits, and a few more.
+        constexpr double clearly_worse = 12;
         constexpr int most_tries = 25;
         try_rest_at(middle, true);
         for (const double way : {1.0, -1.0}) {
@@ -619,7 +620,7 @@ private:
                 const double turn = middle + way * tries;
                 if (turn < 0) break;
                 const double sum = try_rest_at(turn);
-                beyond = sum > best_->sum + open * deviation() * deviation() ? beyond + 1 : 0;
+                beyond = sum > best_->sum + clearly_worse * deviation() * deviation() ? beyond + 1 : 0;
                 if (beyond > 1 && (way > 0 || turn < seen)) break;
             }
         }
@@ -630,14 +631,14 @@ private:
         starts_at_turn_ = std::fabs(swift) < std::fabs(at(p, Unknown::theta0));
     }
 
-    /// A turn near the start has number 0, whether it is still to come or has just been: so no number changes if the
-    /// velocity of a mass that was let go is found to be a little more or a little less than 0.
+    /// A turn near the start has number 0, whether it comes just after or just before it. So the numbers do not change
+    /// if the fitted initial velocity, nearly 0, changes its sign.
     [[nodiscard]] double turns_before(const Parameters& p) const {
         return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
     }
 
-    /// Fits with the mass at rest at this turn, or moving on where it is infinite; also from the best fit when it goes
-    /// on. Where no friction could do that, the fit goes on from there without that.
+    /// Fits with the mass resting at this turn, or never if it is infinite; if `goes_on`, starts from the best fit as
+    /// well. If no friction permits such a rest, continues the fit without it. Returns the sum of squares, or infinity.
     double try_rest_at(double turn, bool goes_on = false) {
         rests_at_ = turn;
         auto found = fit(moving_.value_or(best_->parameters), question_.t.size(), best_scale_, 30);
@@ -645,7 +646,7 @@ private:
             const auto other = fit(best_->parameters, question_.t.size(), best_scale_, 30);
             if (other && (!found || other->sum < found->sum)) found = other;
         }
-        constexpr double few = 4, much = 0.02;  // with less noise the moving part leads to the right one
+        constexpr double few = 4, much = 0.02;  // with less noise the fit of the moving part is a sufficient start
         const bool is_open = turn <= few && record_.noise > much * record_.range;
         for (const Parameters& start : is_open ? shares_of_loss() : std::vector<Parameters>()) {
             const auto other = fit(fitted_of(start), question_.t.size(), best_scale_, 30);
@@ -669,8 +670,8 @@ private:
         return breakaway ? sum : std::numeric_limits<double>::infinity();
     }
 
-    /// Systems whose first half swing loses as much as that of the best fit, more or less of it by dry friction. A
-    /// record of a few swings that rests a turn sooner or later may be one of these, to which no slope leads from the
+    /// Starting values with the first loss of the best fit, split differently between viscous and dry friction. A short
+    /// record that rests one turn earlier or later may belong to one of these, which the search cannot reach from the
     /// best fit.
     [[nodiscard]] std::vector<Parameters> shares_of_loss() {
         const Parameters best = filled_best();
@@ -688,7 +689,7 @@ private:
         return starts;
     }
 
-    /// The Re/k that lets a free decay rest at this turn and not before; 0 when Rd does, none when nothing can.
+    /// The Re/k that makes a free decay rest at this turn and not earlier; 0 if Rd does, empty if no value does.
     [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const {
         const auto decay = std::isfinite(turn) ? decay_of(p) : std::nullopt;
         turn -= turns_before(p);
@@ -710,12 +711,12 @@ private:
 
     // ---- steps of the sum of squares in a driven motion
     //
-    // Re counts only where the mass stands, so the sum of squares has steps: at some Re a stop comes about, lasts over
-    // a whole swing of M, or is no more. No slope leads over a step. So the whole range of Re is looked at, and fits go
-    // on from wherever that is best. What the slopes there say of the errors is not all, then: each motion that was
-    // looked at and is about as near to the record shows how far off the parameters may be.
+    // Re matters only at rest, so the sum of squares has steps: at some Re a stop appears, lasts over a whole swing of
+    // M, or vanishes. A gradient does not lead across steps. So the whole range of Re is sampled, and fits continue
+    // from the best values. The derivatives then underestimate the errors: every sampled motion that fits about as well
+    // shows how far the parameters may be off.
 
-    /// Tries systems that no slope leads to, as long as the fit improves.
+    /// Tries systems that gradients do not reach, as long as the fit improves.
     void try_jumps() {
         constexpr int rounds = 3;
         bool better = true;
@@ -726,15 +727,15 @@ private:
         }
     }
 
-    // ---- how a driven mass began
+    // ---- the start of a driven mass
     //
-    // A mass that M cannot move at first stays where it is at each small velocity, too: at 0 nothing depends on the
-    // velocity. So the beginning of the record is fitted from velocities of all sizes, and fits of all of it go on from
-    // there.
+    // A mass that M cannot move at first stops at once for every small velocity, so near 0 nothing depends on the
+    // velocity. Therefore the beginning of the record is fitted from velocities of all sizes, and then the whole record
+    // from the best ones.
 
-    /// Fits the first angle and velocity to the beginning of the record, the other parameters being as they are, from
-    /// velocities of both signs and all sizes, or where that is given from such angles. Goes on from the best ones
-    /// where they are better than the best fit is there. True when one of them is better.
+    /// Fits the initial angle and velocity to the beginning of the record with the other parameters fixed, from
+    /// velocities of both signs and all sizes, or from several angles if the velocity is given. Continues from the best
+    /// results. Returns whether the fit has improved.
     [[nodiscard]] bool try_other_beginnings() {
         std::vector<Unknown> first;
         for (const Unknown which : {Unknown::velocity0, Unknown::theta0}) {
@@ -786,8 +787,8 @@ private:
         return best_->sum < (1 - same_fit) * before;
     }
 
-    /// Looks at Re from Rd to four times that, or to what holds the mass anywhere in the record, and goes on from the
-    /// two best. True when one of them is better.
+    /// Samples Re from Rd to four times that, or to the value that holds the mass anywhere in the record, and continues
+    /// from the two best. Returns whether the fit has improved.
     [[nodiscard]] bool try_other_breakaways() {
         const Parameters best = filled_best();
         const double before = best_->sum, Rd = at(best, Unknown::Rd);
@@ -815,8 +816,8 @@ private:
         return best_->sum < (1 - same_fit) * before;
     }
 
-    /// Small steps of the sum of squares stop a search by slopes in the midst of a valley; differences over as much as
-    /// the noise lead on.
+    /// Continues a search that small steps of the sum of squares have stopped inside a valley, with differences as
+    /// large as the noise. Returns whether the fit has improved.
     [[nodiscard]] bool try_beyond_steps() {
         const double noise = deviation(), before = best_->sum;
         base_ = best_base_;
@@ -838,12 +839,11 @@ private:
 
     // ---- another valley
     //
-    // Dry and viscous friction take about the same from a motion of one size, and a mass that stands stops as long
-    // under many loads: the search may end in a valley beside the right one, or where nothing moves. There what is left
-    // shows.
+    // Dry and viscous friction dissipate similar amounts at one amplitude, and a stuck mass rests under many loads. So
+    // a search may end in a wrong valley, or in one where nothing moves. A pattern in the residual shows this.
 
-    /// Looks at systems of other natural frequencies, losses and shares of dry friction in them, and goes on from the
-    /// best.
+    /// Samples systems with other natural frequencies, losses and shares of dry friction, and continues from the best
+    /// one.
     void try_other_valleys() {
         const double before = best_->sum;
         std::vector<std::pair<double, Parameters>> looks;
@@ -856,7 +856,7 @@ private:
                 if (is_given(Unknown::I) && !is_given(Unknown::k)) at(p, Unknown::k) = k * faster * faster;
                 const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
                 const double speed =
-                    record_.range * omega0 * std::numbers::pi / 8;  // the mean one of a swing over half the range
+                    record_.range * omega0 * std::numbers::pi / 8;  // mean speed of a swing over half the range
                 const double least = 0.02 * k * record_.range, most = k * record_.range;
                 const double lost = std::clamp(at(from, Unknown::C) * speed + at(from, Unknown::Rd), least, most);
                 for (const double more : {0.5, 1.0, 2.0}) {
@@ -880,24 +880,24 @@ private:
         if (best_->sum < (1 - same_fit) * before && !stopped_) try_jumps();
     }
 
-    /// A motion that never stands says nothing about Re but that a greater one would have held it, and one that stands
-    /// at first nothing about its velocity. Where nothing depends on what Re exceeds Rd by, or on the velocity, about
-    /// 0, and 0 is as good as the noise can tell, no stop that another value makes is believed, nor what it does to
-    /// other parameters. But how sure those are is what the fit leaves open to which it was free.
+    /// Tries to set Re - Rd or the initial velocity to 0. A motion that never stops does not determine Re, except that
+    /// it is not larger, and one that is stuck at first does not determine its velocity. If the prediction does not
+    /// depend on the parameter near 0, and 0 fits within the noise, 0 is used, so that no stops are inferred from
+    /// noise. The errors remain those of the fit with this parameter free.
     void try_none(Unknown which, double little) {
         const LeastSquares best = *best_;
         base_ = best_base_;
         const Eigen::Index place = place_of(which);
         FitScale scale = best_scale_;
-        scale.hold[place] = firmly * record_.range / scale.typical[place];
+        scale.hold[place] = firm_weight * record_.range / scale.typical[place];
         Eigen::VectorXd start = best.parameters;
         start[place] = 0;
         const auto without = fit(start, question_.t.size(), scale, 40);
         if (!without) return;
         seen_.emplace_back(without->sum, filled(without->parameters));
         const double variance = deviation() * deviation(), rise = without->sum - best.sum;
-        constexpr double telling = 4;  // two standard errors
-        if (rise > telling * variance) return;
+        constexpr double significant = 4;  // two standard errors
+        if (rise > significant * variance) return;
         constexpr double same = 1e-8;
         Eigen::VectorXd more = without->parameters;
         more[place] = little * scale.typical[place];
@@ -907,13 +907,13 @@ private:
         if (rise > 0 && !is_flat) return;
         if (!freest_) freest_ = best;
         best_ = without;
-        best_->parameters[place] = 0;  // from which it was held but for roundings
+        best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
         tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
         if (is_flat && which == Unknown::velocity0 && !is_given(Unknown::theta0)) see_short_beginnings();
     }
 
-    /// A mass that stops before there are many samples began elsewhere, as each velocity has it: that is how sure the
-    /// first angle is.
+    /// Varies the initial velocity of a mass that stops before there are many samples; the fitted initial angles show
+    /// the error of the angle.
     void see_short_beginnings() {
         const Parameters best = filled_best();
         const FitScale scale = scale_of(best);
@@ -941,8 +941,8 @@ private:
         }
     }
 
-    /// A record that stands at its least or greatest value may be cut off there, or show where the mass stood: then the
-    /// fit goes beyond it nowhere.
+    /// Decides whether a record is clipped at its extreme values or the mass rested there: in the latter case the fit
+    /// does not exceed them.
     void tell_stops_from_cuts() {
         if (record_.cut.at_low + record_.cut.at_high == 0) return;
         const auto whole = moved(filled_best(), question_.t.size());
@@ -954,8 +954,8 @@ private:
         if (const auto uncut = fit(best_->parameters, question_.t.size(), best_scale_, 15)) best_ = uncut;
     }
 
-    /// Were the sum of squares a parabola, a motion that is so far from the best fit, by so little worse, would show
-    /// the standard error.
+    /// A lower bound of the standard error: for a parabolic sum of squares, each sampled motion that fits nearly as
+    /// well indicates one.
     [[nodiscard]] double least_error(const std::function<double(const Parameters&)>& value) const {
         const double noise = deviation(), best = value(best_filled_);
         constexpr double possible = 16;
@@ -967,11 +967,9 @@ private:
         return least;
     }
 
-    // ---- how sure it is
+    // ---- probability of each way to rest
 
-    // ---- how likely each of them is
-
-    /// The turn at which these parameters come to rest, or behind which nothing of the motion can be seen.
+    /// The turn at which the motion rests, or after which it is too small to be seen.
     [[nodiscard]] std::optional<double> resting_turn(const Parameters& p, double noise) const {
         const auto system = question_.M ? std::nullopt : system_of(p);
         if (!system || !theory::Modes(system->damping_ratio()).swings()) return {};
@@ -983,7 +981,7 @@ private:
         return std::min(motion.extremes() - 1, last) + turns_before(p);
     }
 
-    /// The turn of rest is kept, since differences across a change of the number of swings are no slopes.
+    /// The derivatives with the turn of rest fixed, because differences across a change of that number are meaningless.
     [[nodiscard]] Eigen::MatrixXd slopes_at(const Rest& rest, double noise) {
         breakaway_ = rest.breakaway;
         const Parameters p = filled(rest.fit.parameters);
@@ -999,8 +997,8 @@ private:
         add_steps(rest.slopes, record_.theta - rest.fit.residual, noise, rest.covariance.matrix);
     }
 
-    /// An instrument with steps errs alike as long as the motion stays within one, unless noise hides its steps (by
-    /// the first harmonic of the sawtooth).
+    /// Adds the effect of a digital instrument: its errors are equal as long as the motion stays within one step,
+    /// unless noise hides the steps (estimated by the first harmonic of the sawtooth).
     void add_steps(const Eigen::MatrixXd& J, const Eigen::VectorXd& path, double noise,
                    Eigen::MatrixXd& covariance) const {
         const double step = record_.step, variance = noise * noise, rounded = step * step / 12;
@@ -1018,8 +1016,8 @@ private:
         covariance += share * covariance * (alike - J.transpose() * J) * covariance;
     }
 
-    /// Takes the likeliest of the ways in which the record may have come to rest; in units of noise squared, with what
-    /// is not sure because the others are possible, too.
+    /// Selects the most probable way to rest. Its covariance, in units of noise squared, includes the uncertainty due
+    /// to the other ways.
     [[nodiscard]] Rest weigh_rests() {
         base_ = best_base_;
         const double noise = deviation(), least = best_->sum;
@@ -1035,10 +1033,10 @@ private:
             best.slopes = std::move(held.slopes);
         }
         if (rests_.empty() || !(noise > 0)) return best;
-        constexpr double unlikely = 40;
+        constexpr double clearly_worse = 40;
         std::vector<Rest> ways{best};
         for (Rest& rest : rests_) {
-            if (rest.fit.sum > least + unlikely * noise * noise || is_same(rest.fit, *best_)) continue;
+            if (rest.fit.sum > least + clearly_worse * noise * noise || is_same(rest.fit, *best_)) continue;
             find_covariance(rest, noise);
             ways.push_back(rest);
         }
@@ -1061,14 +1059,14 @@ private:
         return best;
     }
 
-    // ---- what a wrong model leaves
+    // ---- signs of a wrong model
 
-    /// What is left is rounding, of the motion or of an instrument.
+    /// Returns whether the residual is rounding, of the motion or of an instrument.
     [[nodiscard]] bool is_rounding() const {
         return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step();
     }
 
-    /// How the best fit, of which this is the run, changes with each torque that it may lack.
+    /// The changes of the best fit, with `run` as its motion, that each possibly missing torque would cause.
     [[nodiscard]] std::optional<Eigen::MatrixXd> responses_at_best(const model::Oscillator& system,
                                                                    const model::State& initial,
                                                                    const motion::Run& run) {
@@ -1112,12 +1110,14 @@ private:
         return misfit_of(best_->residual, is_white, columns, J, structures);
     }
 
-    /// An instrument that shows steps errs by half of one, alike from sample to sample where the motion is slow.
+    /// Returns whether the residual is within half a step of the instrument, which correlates errors if the motion is
+    /// slow.
     [[nodiscard]] bool is_within_a_step() const {
         constexpr double part = 0.5;
         return deviation() < part * record_.step;
     }
-    /// Noise by which the parameters err: rounding to steps does not show where the mass rests, as the zero fits there.
+    /// The noise that determines the errors. Rounding to steps does not show in a resting mass, as the fitted zero
+    /// absorbs it.
     [[nodiscard]] double noise_of_errors() const {
         return is_within_a_step() ? std::max(deviation(), record_.step / std::sqrt(12.0)) : deviation();
     }
@@ -1135,7 +1135,7 @@ private:
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
-        // Samples whose noise is alike tell less than as many that are independent.
+        // Samples with correlated noise carry less information than independent ones.
         if (found.noise > least_noise * record_.range) {
             found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
         }
@@ -1168,7 +1168,7 @@ private:
                      static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) = covariance.matrix(i, j);
             }
         }
-        if (seeks_Re_) {  // Rd and what Re exceeds it by
+        if (seeks_Re_) {  // add the variance of Rd to that of Re - Rd
             constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
             full.row(Re) += full.row(Rd);
             full.col(Re) += full.col(Rd);
@@ -1182,7 +1182,7 @@ private:
         ratios(full, spread, found);
         if (found.is_unexplained && !found.wild) found.has_errors = false;
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
-        if (found.is_noise) {  // the errors are those of a motion, and there may be none
+        if (found.is_noise) {  // the errors assume a motion, and there may be none
             found.error.fill(0);
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) ratio->error = 0;
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
@@ -1196,7 +1196,7 @@ private:
         return found;
     }
 
-    // ---- bounds of what the record does not determine
+    // ---- bounds of parameters that the record does not determine
 
     void set_bounds(Unknown which, double spread, const Eigen::MatrixXd& covariance, const std::vector<bool>& open,
                     Identified& found) {
@@ -1206,9 +1206,9 @@ private:
         if (which == Unknown::Re && !question_.M) {
             std::tie(low, high) = breakaways();
         } else if (tells_nothing_[i]) {
-            constexpr double as_well = 4;  // two standard errors
+            constexpr double equally_good = 4;  // two standard errors
             for (const auto& [sum, p] : seen_) {
-                if (sum > best_->sum + as_well * spread * spread) continue;
+                if (sum > best_->sum + equally_good * spread * spread) continue;
                 low = std::min(low, at(p, which)), high = std::max(high, at(p, which));
             }
             if (which != Unknown::Re) low = std::min(low, reach(which, -1, spread));
@@ -1222,7 +1222,7 @@ private:
         if (which < Unknown::theta0) low = std::max(low, which == Unknown::Re ? at(found.value, Unknown::Rd) : 0.0);
     }
 
-    /// The change of this parameter alone, towards `way`, that makes the fit worse by two standard errors.
+    /// The change of this parameter alone in direction `way` that worsens the fit by two standard errors.
     [[nodiscard]] double reach(Unknown which, double way, double spread) {
         const auto fits = [&](double step) {
             Parameters p = best_filled_;
@@ -1244,21 +1244,21 @@ private:
         return at(best_filled_, which) + way * least;
     }
 
-    /// The range of Re of a free decay: it holds the mass where it rests, and let it pass the turn before.
+    /// The range of Re of a free decay: Re holds the mass where it rests, but not at the previous turn.
     [[nodiscard]] std::pair<double, double> breakaways() const {
         const double k = at(best_filled_, Unknown::k), Rd = at(best_filled_, Unknown::Rd);
         const auto decay = decay_of(best_filled_);
         if (!decay) return {Rd, INFINITY};
         const double half = std::numbers::pi / (omega0_of(best_filled_) * std::sqrt(1 - decay->zeta * decay->zeta));
-        const double last = std::floor((record_.span - decay->first.t) / half);  // turn of the record
+        const double last = std::floor((record_.span - decay->first.t) / half);  // index of the last turn in the record
         const double rest = best_rest_ ? *best_rest_ - turns_before(best_filled_) : decay->extremes - 1;
         if (rest > last) return {Rd, last < 0 ? INFINITY : k * std::fabs(decay->size_at(last))};
         const double before = rest < 1 ? INFINITY : k * decay->size_at(rest - 1);
         return {std::max(Rd, k * std::fabs(decay->size_at(rest))), before};
     }
 
-    /// Returns whether the residual is more alike from sample to sample than noise. That is independent: the squares of
-    /// the differences of neighbours are then twice as large on average, with a standard deviation of 2/sqrt(n).
+    /// Returns whether neighbours in the residual are more alike than in white noise. In white noise the mean square of
+    /// differences is twice the mean square, with a standard deviation of 2/sqrt(n).
     [[nodiscard]] bool leaves_pattern(double deviations) const {
         const Eigen::VectorXd& left = best_->residual;
         const Eigen::Index n = left.size() - 1;
@@ -1266,12 +1266,12 @@ private:
         return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
     }
 
-    /// Judges whether the fit explains the record. A search finds a motion in noise as well, which explains some ten
-    /// squares of it.
+    /// Judges whether the fit explains the record. The search also finds a motion in pure noise, which explains some
+    /// ten times its variance.
     void judge(Identified& found) const {
         const double all = (record_.theta.array() - record_.theta.mean()).square().sum(), left = best_->sum;
         constexpr double by_search = 2;
-        const double some = question_.M ? 20 : 12;  // measured: one record of noise in some hundred explains more
+        const double some = question_.M ? 20 : 12;  // measured: about one of a hundred records of noise explains more
         const double by_chance = by_search * std::log(static_cast<double>(record_.theta.size())) + some;
         found.is_noise = all - left < by_chance * found.noise * found.noise;
         found.scatter = std::max(record_.noise, smallest_step(question_.theta));
@@ -1290,7 +1290,7 @@ private:
         if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);
     }
 
-    /// omega0, zeta and Rd/k, with the errors that their parts have together.
+    /// Computes omega0, zeta and Rd/k, with errors that include the correlations of their parts.
     void ratios(const Eigen::MatrixXd& covariance, double spread, Identified& found) const {
         const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
         const double Rd = at(found.value, Unknown::Rd);
@@ -1314,21 +1314,22 @@ private:
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
     Parameters base_{}, best_base_{};
-    double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: Rd/k
-    std::optional<double> rests_at_ = {};        // the turn at which a free decay is made to rest
-    bool starts_at_turn_ = false;                // how turns are numbered
-    std::vector<Rest> rests_ = {};               // the best fit of each such turn
+    double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: it equals Rd/k
+    std::optional<double> rests_at_ = {};        // prescribed turn of rest of a free decay
+    bool starts_at_turn_ = false;                // whether turn 0 may lie before the start, see turns_before()
+    std::vector<Rest> rests_ = {};               // best fit for each turn of rest
     std::optional<double> best_rest_ = {};
     std::optional<LeastSquares> best_;
-    std::optional<LeastSquares> freest_;  // before the best one was made to do without what tells nothing
+    std::optional<LeastSquares> freest_;  // best fit before undetermined parameters were set to 0
     std::array<bool, unknown_count> tells_nothing_{};
-    std::vector<std::pair<double, Parameters>> seen_;  // of a driven motion: sums of squares, and what has them
+    // for a driven motion: sampled sums of squares and their parameters
+    std::vector<std::pair<double, Parameters>> seen_;
     Parameters best_filled_{};
-    std::optional<Eigen::VectorXd> moving_;  // what the moving part of a free decay says by itself
+    std::optional<Eigen::VectorXd> moving_;  // fit of the moving part of a free decay
     FitScale best_scale_;
-    std::size_t left_out_ = 0;  // of the last turns of a free decay: noise, or the motion's end, may have made them
+    std::size_t left_out_ = 0;  // number of last turns left out, which noise or the end of the motion may have caused
     int runs_ = 0;
-    int agreed_ = 0;  // other fits that came to the best one: what is given may leave nothing nearer to the record
+    int agreed_ = 0;  // number of other fits that came to the best one, which suggests that no better one exists
     bool stopped_ = false;
 };
 

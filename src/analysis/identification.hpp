@@ -1,9 +1,8 @@
-// Identification of the system behind a record: the parameters whose exact motion is nearest to measured angles, and
-// their errors.
+// Identification: finds the parameters whose exact motion is nearest to measured angles, and their errors.
 //
-// A free decay needs no guess: its extremes say how long a swing lasts and what each one loses. With a known M the weak
+// A free decay needs no guess: its extremes determine the period and the loss of each swing. With a known M, the weak
 // form of the equation of motion (multiplied by bumps and integrated by parts, so that nothing is differentiated) is
-// linear in I, C, k and Rd. From there Levenberg and Marquardt's method goes on with exact motions.
+// linear in I, C, k and Rd. From this start the method of Levenberg and Marquardt fits exact motions.
 #pragma once
 
 #include <array>
@@ -18,7 +17,7 @@
 
 namespace dinal::analysis {
 
-/// The parameters that a record may determine. The last three are of the measured angle, theta + offset, at its first
+/// The parameters that a record may determine. The last three describe the measured angle, theta + offset, at its first
 /// time.
 enum class Unknown : int { I, k, C, Rd, Re, theta0, velocity0, offset };
 inline constexpr int unknown_count = 8;
@@ -26,9 +25,10 @@ inline constexpr std::array<std::string_view, unknown_count> unknown_names{"I", 
                                                                            "Re", "theta0", "velocity0", "offset"};
 
 struct IdentifyQuestion {
-    std::vector<double> t, theta;             ///< times increase; at least as many as unknowns, and eight
-    std::optional<model::Excitation> M = {};  ///< none: a free decay, which tells ratios: I = 1 unless I or k is given
-    std::array<std::optional<double>, unknown_count> given = {};  ///< of those that are not fitted
+    std::vector<double> t, theta;  ///< times increase; at least eight samples, and as many as unknowns
+    /// none: a free decay, which determines ratios only: I = 1 unless I or k is given
+    std::optional<model::Excitation> M = {};
+    std::array<std::optional<double>, unknown_count> given = {};  ///< values of parameters that are not fitted
 };
 
 struct IdentifiedRatio {
@@ -36,26 +36,30 @@ struct IdentifiedRatio {
 };
 
 struct Identified {
-    std::array<double, unknown_count> value{}, error{};  ///< error: of one standard deviation; 0 of what was given
-    std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: the record says nothing about it
-    std::array<double, unknown_count> low{}, high{};  ///< of what is silent: values from low to high fit about as well
-    IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};    ///< a free decay determines these
-    std::vector<double> predicted;                    ///< at the times of the record
-    double noise = 0;                                 ///< standard deviation of what is left
-    std::size_t cut_low = 0, cut_high = 0;  ///< samples at the least and the greatest value, where those cut it off
-    double scatter = 0;                     ///< what neighbouring samples differ by that a smooth motion would not
-    double widening = 1;                    ///< of the errors, because the residual is alike from sample to sample
-    bool M_is_noisy = false;                ///< which the errors ignore
-    bool is_noise = false;                  ///< it explains no more of the record than it would of noise
-    bool is_unexplained = false;            ///< it leaves much of the record, and what it leaves is not noise
-    std::optional<Follows> misfit = {};     ///< the pattern that a wrong model leaves in the residual
-    double noise_without_misfit = 0;       ///< standard deviation without that pattern, or by the record itself if less
-    bool has_errors = true;                ///< false: the model is so wrong that nothing is known of them
-    std::optional<std::size_t> wild = {};  ///< the sample that makes more than half of the sum of squares
-    int runs = 0;                          ///< motions that were compared with the record
+    std::array<double, unknown_count> value{}, error{};  ///< error: one standard deviation; 0 for given parameters
+    std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: not determined by the record
+    /// for silent parameters: values from low to high fit about equally well
+    std::array<double, unknown_count> low{}, high{};
+    IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};  ///< determined by a free decay
+    std::vector<double> predicted;                  ///< at the times of the record
+    double noise = 0;                               ///< standard deviation of the residual
+    /// numbers of samples at the least and greatest value if these clip the record
+    std::size_t cut_low = 0, cut_high = 0;
+    double scatter = 0;       ///< differences of neighbouring samples that a smooth motion would not have
+    double widening = 1;      ///< factor of the errors due to correlated residuals
+    bool M_is_noisy = false;  ///< whether M is noisy, which the errors ignore
+    bool is_noise = false;    ///< whether the fit explains no more than it would of pure noise
+    /// whether much of the record is unexplained, and the residual is not noise
+    bool is_unexplained = false;
+    std::optional<Follows> misfit = {};  ///< pattern in the residual that indicates a wrong model
+    /// standard deviation without that pattern, or that of the record itself if less
+    double noise_without_misfit = 0;
+    bool has_errors = true;                ///< false if the model is so wrong that errors are meaningless
+    std::optional<std::size_t> wild = {};  ///< index of a sample that makes up more than half of the sum of squares
+    int runs = 0;                          ///< number of motions compared with the record
 };
 
-/// Fails when the record cannot be one: too short, constant, times that do not increase.
+/// Fails if the record is unusable: too short, constant, or with times that do not increase.
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor = {});
 
 }  // namespace dinal::analysis

@@ -76,7 +76,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
         tell_of_run(question, *run, facts);
         double size = 0;
         for (const BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
-        // The difference of two angles held together is rounding.
+        // The difference of two angles held together is only rounding.
         if (system.is_link(joint) && facts.high - facts.low <= 1e-13 * size) {
             facts.status = SteadyStatus::adheres;
             facts.amplitude = 0;
@@ -96,7 +96,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
         if (whole.by_returns.drive)
             facts.by_returns.question = begun_at(question, *whole.by_returns.drive, question.repeats.start);
     }
-    // The angle of a rotating body never returns.
+    // The angle of a rotating body is not periodic.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
     if (!question.is_plain() && facts.is_found() &&
         std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {

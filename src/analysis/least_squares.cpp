@@ -12,7 +12,7 @@ double size_of(const Eigen::VectorXd& p, const FitScale& scale, Eigen::Index i) 
     return std::max(std::fabs(p[i]), scale.typical[i]);
 }
 
-/// One more run a parameter: enough to go downhill by. Upwards, so that no bound is passed.
+/// Forward differences, one run for each parameter: accurate enough for the descent. They never cross a lower bound.
 std::optional<Eigen::MatrixXd> slopes(const Prediction& model, const Eigen::VectorXd& p, const FitScale& scale,
                                       const Eigen::VectorXd& here) {
     Eigen::MatrixXd J(here.size(), p.size());
@@ -40,7 +40,8 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
         if (!there) return {};
         return (*there - *here) / (other[i] - p[i]);
     };
-    // To one side by a step that changes as much as the noise, which is looked for between these two.
+    // A one-sided difference by a step that changes the prediction by about the noise. The step is bracketed between h
+    // and too_long.
     const auto secant = [&](Eigen::Index i, double side) {
         double h = 1e-6 * size_of(p, scale, i), too_long = INFINITY;
         auto found = slope(i, side * h);
@@ -60,7 +61,7 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
                 found = std::move(further);
             }
         }
-        // It stands before a jump: what the jump does is not known better than that it is not here.
+        // A jump lies within reach: count its effect only up to the size of the noise.
         const auto beyond = found && std::isfinite(too_long) ? slope(i, side * too_long) : std::nullopt;
         if (beyond) found = *beyond * std::min(1.0, noise / (too_long * beyond->norm()));
         return found;
@@ -69,7 +70,7 @@ std::optional<Eigen::MatrixXd> derivative(const Prediction& model, const Eigen::
     for (Eigen::Index i = 0; i < p.size(); ++i) {
         const auto up = secant(i, 1), down = secant(i, -1);
         if (!up && !down) return {};
-        constexpr double jump = 3;  // so much steeper is no bend
+        constexpr double jump = 3;  // a greater ratio is a jump, not a bend
         const double above = up ? up->norm() : INFINITY, below = down ? down->norm() : INFINITY;
         if (above > jump * below) {
             J.col(i) = *down;
@@ -105,7 +106,7 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
         normal.diagonal() += size.cwiseProduct(hold).cwiseAbs2();
         gradient -= (now.parameters - start).cwiseProduct(hold.cwiseAbs2()).cwiseProduct(size);
         for (Eigen::Index i = 0; i < size.size(); ++i) {
-            // A parameter at its bound that wants beyond it stays there, and one that nothing depends on where it is.
+            // A parameter that would cross its bound stays there; one without influence stays in place.
             const bool at_bound = now.parameters[i] <= scale.least[i] && gradient[i] < 0;
             if (!at_bound && normal(i, i) > 1e-10 * most) continue;
             normal.row(i).setZero();
@@ -124,7 +125,8 @@ std::optional<LeastSquares> least_squares(const Prediction& model, const Eigen::
             const Eigen::VectorXd way = algebra::solve_symmetric(damped, gradient).cwiseProduct(size);
             Eigen::VectorXd next = (now.parameters + way).cwiseMax(scale.least);
             for (Eigen::Index i = 0; i < next.size(); ++i) {
-                // A positive parameter shrinks by at most a factor a step: one long step to 0 would not come back.
+                // A positive parameter shrinks at most by a factor 4 per step: after a long step to 0 it would not
+                // return.
                 if (scale.least[i] > 0) next[i] = std::max(next[i], now.parameters[i] / 4);
             }
             if (!next.allFinite()) continue;
@@ -151,7 +153,7 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     const std::vector<bool> none(static_cast<std::size_t>(n), false);
     Covariance result{Eigen::MatrixXd::Zero(n, n), none, none};
     if (n == 0) return result;
-    // Below 1e-8 of the greatest a slope by differences is rounding.
+    // Derivatives below 1e-8 of the greatest are rounding of the differences.
     constexpr double widest = 10, rounding = 1e-8;
     J *= whole.asDiagonal();
     const double known = std::max(noise / widest, rounding * std::max(J.colwise().norm().maxCoeff(), 1e-300));
@@ -161,7 +163,7 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     const Eigen::MatrixXd inverse = algebra::inverse_of_triangular(R);
     result.matrix = inverse * inverse.transpose();
     for (Eigen::Index i = 0; i < n; ++i) {
-        const double unknown = known * std::sqrt(result.matrix(i, i));  // 1 if nothing depends on it
+        const double unknown = known * std::sqrt(result.matrix(i, i));  // 1 if nothing depends on the parameter
         result.silent[static_cast<std::size_t>(i)] = unknown > 1 / widest;
         constexpr double most = 0.5;
         result.open[static_cast<std::size_t>(i)] = unknown > most;

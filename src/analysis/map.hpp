@@ -1,5 +1,5 @@
-// The map whose fixed points are steady motions: from one return of a motion to the next, after a period of what drives
-// it, half a period of a symmetric one, or from passage to passage of a section. docs/theory.md, section 10.
+// The map whose fixed points are steady motions: from one return of a motion to the next, after a period of the drive,
+// half a period of a symmetric motion, or from passage to passage of a section. docs/theory.md, section 10.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@
 
 namespace dinal::analysis {
 
-/// The discrete part of a moment, which cannot change continuously.
+/// The discrete part of a state, which cannot change continuously.
 struct HeldMode {
     motion::engine::Mode mode;
     std::vector<std::vector<motion::engine::Signal::Memory>> controllers;
@@ -21,7 +21,7 @@ struct HeldMode {
     friend bool operator==(const HeldMode& a, const HeldMode& b);
 };
 
-/// Maps a place to the place one return later. The numbers of a place are of order 1.
+/// Maps a place to the place one return later. A place is a vector of coordinates of order 1.
 class Map {
 public:
     struct Return {
@@ -30,8 +30,9 @@ public:
         bool finished = false;
         model::Outcome outcome = model::Outcome::reached_end;
         std::optional<HeldMode> mode = {};                          ///< none if it follows from the place
-        std::vector<std::pair<model::EventKind, int>> events = {};  ///< on the way: kind and joint
-        std::optional<Eigen::MatrixXd> derivative = {};             ///< by the place; none: use differences
+        std::vector<std::pair<model::EventKind, int>> events = {};  ///< kind and joint of each event on the way
+        /// with respect to the place; none: use differences
+        std::optional<Eigen::MatrixXd> derivative = {};
     };
     struct Derivative {
         Eigen::MatrixXd by_place;
@@ -60,7 +61,7 @@ struct Closed {
     double period = 0, residual = 0;
 };
 
-/// The greatest magnitude of its numbers.
+/// The greatest magnitude of a component.
 double size_of_step(const Eigen::VectorXd& step);
 
 }  // namespace dinal::analysis

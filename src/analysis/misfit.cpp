@@ -12,13 +12,13 @@
 namespace dinal::analysis {
 namespace {
 
-/// The products of columns with each other, from which columns are taken out one by one: what is left is that of the
-/// others without what lies in these.
+/// The matrix of inner products of columns. Columns can be eliminated one by one; the products are then those of the
+/// components orthogonal to them.
 class Products {
 public:
     explicit Products(const Eigen::MatrixXd& all) : left_(all.transpose() * all), whole_(left_.diagonal()) {}
 
-    /// Of the length of a column, the part that does not lie in those that were taken out.
+    /// The fraction of a column's length that is orthogonal to the eliminated columns.
     [[nodiscard]] double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
     [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const { return left_(i, j); }
     void take_out(Eigen::Index i) {
@@ -36,10 +36,10 @@ private:
     int taken_ = 0;
 };
 
-/// In standard deviations: beyond the first a term counts in the errors, beyond the other it is there.
+/// Significance in standard deviations: from the first a term adds to the errors, from the second it counts as present.
 constexpr double possible = 2.2, beyond_chance = 4;
 
-/// Removes a memory of one step, in each measured column by itself.
+/// Removes a correlation with the previous sample (a memory of one step), in each measured column separately.
 class Filter {
 public:
     Filter(std::span<const int> columns, const Eigen::VectorXd& residual, int fitted) : before_(columns.size(), -1) {
@@ -53,7 +53,7 @@ public:
             squares += residual[now] * residual[now];
             if (before_[i] >= 0) products += residual[now] * residual[before_[i]];
         }
-        // Each fitted number takes a slow part of the noise away, and with it some of the memory.
+        // Each fitted parameter removes part of the slow noise and so reduces the measured memory.
         const double n = static_cast<double>(columns.size()), found = squares > 0 ? products / squares : 0;
         constexpr double most = 0.98;
         memory_ = std::clamp(found + (1 + std::max(found, 0.0)) * (fitted + 1) / n, 0.0, most);
@@ -73,7 +73,7 @@ public:
         return filtered;
     }
 
-    /// The covariance of noise with that memory times all: what is alike behind and before each row.
+    /// The covariance matrix of noise with that memory times `all`, by one recursion forwards and one backwards.
     [[nodiscard]] Eigen::MatrixXd remembered(const Eigen::MatrixXd& all) const {
         Eigen::MatrixXd behind = all, before = all;
         for (std::size_t i = 0; i < before_.size(); ++i) {
@@ -92,7 +92,7 @@ private:
     double memory_ = 0;
 };
 
-/// Numbers in columns side by side.
+/// The matrix [a b]; missing rows are zero.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     Eigen::MatrixXd both(std::max(a.rows(), b.rows()), a.cols() + b.cols());
     if (a.cols() > 0) both.leftCols(a.cols()) = a;
@@ -100,7 +100,7 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return both;
 }
 
-/// A vector without what lies in the columns, and how long each of these counts in it.
+/// Coefficients of the columns in y, and the remainder.
 struct Regression {
     Eigen::VectorXd parts, rest;
 };
@@ -111,8 +111,9 @@ Regression regression(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) 
     return {parts.cwiseQuotient(lengths), y - units * parts};
 }
 
-/// Looks for the terms of a structure by which a residual is more than noise: the one that stands out most, then what
-/// stands out beside it. Each is one column beside the slopes, so that what the parameters imitate counts for nothing.
+/// Searches the terms of a structure that explain more of a residual than noise could: the most significant one first,
+/// then further ones. Each is tested in addition to the slopes, so that effects which the parameters can imitate do not
+/// count.
 class Search {
 public:
     Search(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns, const Eigen::MatrixXd& slopes,
@@ -140,12 +141,12 @@ public:
         }
     }
 
-    /// Of the first one, in standard deviations of chance; 0 if there is none.
+    /// The significance of the first term, in standard deviations of chance; 0 if there is none.
     [[nodiscard]] double most() const { return most_; }
     [[nodiscard]] const std::vector<Eigen::Index>& found() const { return found_; }
 
 private:
-    /// Of the slopes, the terms, the faster ones and, last, the residual, without a memory of one step.
+    /// The products of slopes, terms, faster terms and, last, the residual, filtered if the residual has a memory.
     static Products products(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
                              const Eigen::MatrixXd& slopes, const Structure& structure) {
         const Eigen::MatrixXd known = beside(slopes, structure.columns);
@@ -154,10 +155,10 @@ private:
         return Products(Filter(columns, regression(known, residual).rest, static_cast<int>(known.cols()))(all));
     }
 
-    /// By how many standard deviations the column is seen in the residual.
+    /// The significance of a column in the residual, in standard deviations.
     [[nodiscard]] double score(Eigen::Index i) const {
-        constexpr double imitated = 0.02, least_spare = 8;
-        if (!(products_.own(i) > imitated)) return 0;
+        constexpr double least_own_share = 0.02, least_spare = 8;
+        if (!(products_.own(i) > least_own_share)) return 0;
         const double along = products_(i, last_), square = along * along / products_(i, i);
         const double spare = static_cast<double>(size_ - products_.taken() - 1),
                      left = products_(last_, last_) - square;
@@ -170,7 +171,7 @@ private:
     std::vector<Eigen::Index> found_ = {};
 };
 
-/// A chi squared in standard deviations of a Gaussian (Wilson and Hilferty's root).
+/// Converts chi squared into standard deviations of a Gaussian (cube root of Wilson and Hilferty).
 double deviations(double chi_squared, int more) {
     const double spread = 2.0 / (9 * more);
     return (std::cbrt(chi_squared / more) - (1 - spread)) / std::sqrt(spread);
@@ -193,7 +194,7 @@ Structure drift(std::span<const double> times, std::span<const int> columns, int
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto place = static_cast<std::size_t>(i);
         if (columns[place] != column) continue;
-        // From 0 at the first time on, as the fitted zero is that of the first time.
+        // The drift is 0 at the first time, because the fitted zero refers to it.
         const double angle = std::numbers::pi * (times[place] - times.front()) / span, twice = 2 * std::cos(angle);
         drifts(i, 0) = angle;
         double before = 1, now = twice / 2;
@@ -253,8 +254,8 @@ bool has_only_memory(std::span<const double> residual) {
     const double memory = correlated(residual, 1) / correlated(residual, 0);
     std::vector<double> filtered;
     for (std::size_t i = 1; i < residual.size(); ++i) filtered.push_back(residual[i] - memory * residual[i - 1]);
-    constexpr double very = 4;
-    return memory > 0 && is_white(filtered, very);
+    constexpr double very_unusual = 4;
+    return memory > 0 && is_white(filtered, very_unusual);
 }
 
 double smallest_step(std::span<const double> values) {

@@ -21,7 +21,7 @@ double sign_of(double x) {
     return x > 0 ? 1 : x < 0 ? -1 : 0;
 }
 
-/// The changes of angle and velocity by each of the torques, which act from one time to the next.
+/// The changes of angle and velocity caused by each of the torques, advanced from one time to the next.
 class Response {
 public:
     using Row = MissingTorques::Row;
@@ -36,7 +36,7 @@ public:
 
     [[nodiscard]] const Row& angle() const { return angle_; }
 
-    /// Moves on by h, while the torques go in a straight line from one value to the other.
+    /// Advances by h, while the torques change linearly.
     void move(double h, const Row& from, const Row& to) {
         if (!(h > 0)) return;
         set_step(h);
@@ -46,27 +46,27 @@ public:
         velocity_ = slope + back_ * y + left_ * u;
     }
     void stop() { velocity_.setZero(); }
-    /// The mass comes from this way, and friction reverses with its velocity.
+    /// A turn: `way` is the direction before it, after which friction reverses.
     void turn(double pull, double way) {
         const double before = pull - Rd_ * way, after = pull + Rd_ * way;
         if (before != 0) velocity_ *= after / before;
     }
-    /// The mass leaves this way as soon as the pull is Re: sooner with a torque that helps.
+    /// A start in direction `way` when the pull reaches Re: a helping torque makes it start earlier.
     void start(double t, double pull, double way, const Row& torques) {
         const double h = 1e-5 / omega0_, rise = (M_.value(t + h) - M_.value(t - h)) / (2 * h);
         if (rise * way > 0) velocity_ = (pull - Rd_ * way) / (I_ * rise) * (torques - k_ * angle_);
     }
 
 private:
-    /// The free motion over h.
+    /// Computes the free motion over h.
     void set_step(double h) {
         constexpr double same = 1e-12;
         if (std::fabs(h - step_) <= same * h) return;
         step_ = h;
         const double decay = C_ / (2 * I_), q = omega0_ * omega0_ - decay * decay, rate = std::sqrt(std::fabs(q));
         double c = 0, s = 0;
-        constexpr double hardly = 1e-6;
-        if (rate * h < hardly) {
+        constexpr double least_decay = 1e-6;
+        if (rate * h < least_decay) {
             c = std::exp(-decay * h), s = h * c;
         } else if (q > 0) {
             const double kept = std::exp(-decay * h);
@@ -93,7 +93,8 @@ MissingTorques::MissingTorques(std::span<const double> theta, std::span<const do
 MissingTorques::Row MissingTorques::at(double theta, double velocity, double way) const {
     const double x = theta / far_, v = velocity / fast_;
     const auto slow = [&](double speed) { return way * std::exp(-(v * v) / (speed * speed)); };
-    constexpr double slowest = 0.1, slower = 0.25, half = 0.6;  // of the greatest speed: where friction may fall
+    // fractions of the greatest speed below which friction may fall
+    constexpr double slowest = 0.1, slower = 0.25, half = 0.6;
     Row row;
     row << v, way, slow(slowest), slow(slower), slow(half), x, x * x, x * x * x;
     return row;
@@ -164,7 +165,8 @@ std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const d
             if (!there) return {};
             columns.col(i) = (*there - *here) / step;
             const double change = (*there - *here).norm();
-            constexpr double least = 0.05, most = 20, widest = 1e3;  // of the noise, all samples together
+            // change of the prediction relative to the noise, over all samples
+            constexpr double least = 0.05, most = 20, widest = 1e3;
             if (change > least * noise && change < most * noise) break;
             step *= std::clamp(noise / std::max(change, 1e-300), 1 / widest, widest);
         }

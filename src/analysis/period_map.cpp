@@ -129,7 +129,7 @@ MapStep PeriodMap::step_of_run(const motion::Run& run, const std::vector<Stretch
     step.t_low = first <= step.to[0] ? begins : ends;
     step.t_high = first >= step.to[0] ? begins : ends;
     for (const model::Event& event : run.events) {
-        if (event.kind == model::EventKind::slip) continue;  // it stood there before
+        if (event.kind == model::EventKind::slip) continue;  // the mass stood there before
         if (event.theta < step.low) {
             step.low = event.theta;
             step.t_low = event.t;
@@ -139,8 +139,8 @@ MapStep PeriodMap::step_of_run(const motion::Run& run, const std::vector<Stretch
             step.t_high = event.t;
         }
     }
-    // A mass that stands at the beginning came to a stop before, as it does at the end; also if M jumps just then and
-    // releases it.
+    // A mass that rests at the start has stopped earlier, as it does at the end of the period, even if a jump of M
+    // releases it at once.
     const bool stands_on = run.motion_at_stop == model::Motion::stuck && !run.events.empty();
     if (stands_on) {
         const double since = run.events.back().t;
@@ -171,7 +171,7 @@ Eigen::Matrix2d PeriodMap::free_motion(double length) const {
     return matrix;
 }
 
-/// M' as the limit from the left, where the breakaway comes from.
+/// The limit of M' from the left, as seen by the breakaway.
 double PeriodMap::slope_before(double t) const {
     const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
     const double now = drive_.M().value_before(t), one = drive_.M().value(t - h), two = drive_.M().value(t - 2 * h);

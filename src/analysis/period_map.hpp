@@ -1,4 +1,5 @@
-// The period map of one plain body that is linear between events, with its exact derivative: the fast map of a search.
+// The period map of one plain body that is linear between events, with its exact derivative. Searches use it because it
+// is fast.
 //
 // A slide is linear, so its derivative is that of the free motion, whatever M is; an event contributes its jump matrix
 // (Aizerman and Gantmakher). With walls the derivative is computed by differences.
@@ -39,7 +40,7 @@ struct MapStep {
     bool differentiable = true;    ///< whether `derivative` is valid; otherwise use differences
     bool finished = true;          ///< whether the run reached its end with finite numbers
     bool moved = true;             ///< whether the mass moved at any time
-    bool on_edge = false;          ///< whether it stands at the limit of friction: the derivative is one-sided
+    bool on_edge = false;          ///< whether the mass rests at the limit of friction: the derivative is one-sided
     double low = 0, high = 0;      ///< the extremes of theta
     double t_low = 0, t_high = 0;  ///< times of the extremes
     std::size_t stops = 0;
@@ -57,15 +58,15 @@ public:
     /// The opposite of the state half a period later, for a symmetric problem.
     static PeriodMap half(const SteadyQuestion& question, const motion::Monitor& monitor);
 
-    /// One return, with all that it shows.
+    /// One return with all its facts.
     [[nodiscard]] MapStep step(const Place& from) const;
 
-    // As a Map: a place is divided by the size of the motion.
+    // As a Map; places are divided by the size of the motion.
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
     [[nodiscard]] double rounding() const override { return rounding_of_place() / unit_; }
-    /// Divides places by the size of the motion that begins here; returns its first place.
+    /// Sets the unit of places to the size of the motion that begins here; returns its first place.
     Return measured(const Place& from);
     [[nodiscard]] Place place(const Eigen::VectorXd& of_map) const { return inside(system_, unit_ * of_map); }
     /// The size of the motion of a step.
@@ -100,8 +101,8 @@ private:
     mutable std::optional<std::pair<Place, MapStep>> last_;
 };
 
-/// The motion that a run from the start of the question leads to, by the period map. `near`: the start is near the
-/// answer, and the motion there is wanted if it is stable. Requires PeriodMap::applies_to().
+/// Finds the motion that a run from the start of the question leads to, by the period map. `near` says that the start
+/// is near the answer, and a stable motion there is wanted. Requires PeriodMap::applies_to().
 SteadyMotion motion_by_periods(const SteadyQuestion& question, bool near, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

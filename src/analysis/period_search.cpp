@@ -84,15 +84,15 @@ private:
         if (halves && at_once && found_by_half(start_, contracting)) return;
         const auto last = search(question_, at_once);
         if (!last) return;
-        // Near resonance a beat may be slower than all of that.
+        // Near resonance a beat may be slower than the whole search.
         if (halves && is_bounded() && found_by_half(whole().place(last->to), true)) return;
         look_beside(*last, question_.periods);
     }
 
     [[nodiscard]] bool is_free() const override { return !(system_.stiffness() > 0) && !question_.body.walls(); }
 
-    /// The growth in each natural period without viscous damping: a harmonic of M at the natural frequency adds pi
-    /// |M_n| / k, and friction takes 2 (Rd forward + Rd backward) / k.
+    /// The growth per natural period without viscous damping: a harmonic of M at the natural frequency adds pi |M_n| /
+    /// k, and friction takes 2 (Rd forward + Rd backward) / k.
     [[nodiscard]] double resonant_growth() const {
         const model::Oscillator& system = question_.body;
         if (system.damping() != 0 || !(system.stiffness() > 0) || system.walls()) return 0;
@@ -107,7 +107,7 @@ private:
     }
 
     void grow(double growth) {
-        constexpr int periods = 30;  // within which friction may have stopped it for good
+        constexpr int periods = 30;  // in this time friction may stop the mass for good
         Place x = start_;
         MapStep step = whole().step(x);
         for (int i = 0; i < periods && step.finished && step.moved; ++i) {
@@ -141,7 +141,7 @@ private:
         return repeats(x) && settle(half(), x, 1, found->residual, false);
     }
 
-    /// A function's antisymmetry was only sampled: a whole period verifies it.
+    /// Verifies antisymmetry over a whole period, because that of a function was only sampled.
     [[nodiscard]] bool repeats(const Place& x) {
         if (std::isfinite(question_.drive.M().most())) return true;
         const MapStep step = whole().step(x);
@@ -156,7 +156,7 @@ private:
         if (const auto rest = step.moved ? rest_beside(x, step) : std::nullopt) {
             if (!whole().step(*rest).moved) return stand(rest_of_run().value_or(*rest));
         }
-        // Newton's method leads to any of the places where it may rest.
+        // Newton's method may end at any of the places where the mass may rest.
         if (!step.moved) return stand(rest_of_run().value_or(x));
         facts_.outcome = step.outcome;
         if (!step.finished) return false;
@@ -188,7 +188,7 @@ private:
         return true;
     }
 
-    /// The place where a run from the start comes to rest; none if that takes long.
+    /// The place where a run from the start comes to rest; empty if that takes too long.
     [[nodiscard]] std::optional<Place> rest_of_run() {
         constexpr int periods = 60;
         Place x = start_;

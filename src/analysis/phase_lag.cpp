@@ -12,7 +12,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 constexpr int samples = 4096;         // samples of a period, for its Fourier integral
 constexpr int least_rows = 100;       // rows in a period, if only rows are available
-constexpr double least_share = 1e-6;  // a smaller part of a fundamental in the whole is rounding
+constexpr double least_share = 1e-6;  // a relatively smaller fundamental counts as rounding
 
 /// M between rows, by linear interpolation.
 double M_between_rows(const motion::Run& run, double t) {

@@ -18,7 +18,7 @@ struct Recurrence {
     double drift = 0;  ///< change of theta in a period: nonzero only for a stick-slip motion that advances
     double amplitude = 0, centre = 0;  ///< half the distance between the extremes, and their middle
     double change = 0;                 ///< change from the period before, in amplitudes
-    double since = 0, until = 0;       ///< interval in which the motion repeats to a thousandth of its amplitude
+    double since = 0, until = 0;       ///< interval in which the motion repeats within a thousandth of its amplitude
     std::size_t stops = 0;             ///< stops in a period
     double stuck = 0;                  ///< part of a period
 };

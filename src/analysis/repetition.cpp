@@ -272,7 +272,7 @@ bool is_antisymmetric(const model::Excitation& excitation, const Repetition& rep
         greatest = std::max(greatest, size);
         worst = std::max(worst, std::fabs(now + half) - 1e-12 * size);
     }
-    // Cancelling terms leave the rounding of the greatest; a function has only its values.
+    // Terms that cancel leave the rounding of the greatest; for a function only its values are known.
     const double most = excitation.most();
     return worst <= 1e-13 * (std::isfinite(most) ? most : greatest);
 }

@@ -16,7 +16,7 @@ struct Repetition {
     double start = 0, period = 0;
 };
 
-/// The repetition as declared by the terms; none if unknown. A constant M gets the period `otherwise`.
+/// The repetition as declared by the terms; none if unknown. The period of a constant M is `otherwise`.
 std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise);
 
 /// Returns whether M changes sign half a period later (at the opposite state, if it depends on the state).

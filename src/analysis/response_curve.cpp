@@ -28,7 +28,7 @@ public:
         sweep();
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
         follow_births();
-        if (walked_ && !stopped()) look_from_far_end();
+        if (walked_ && !stopped()) search_from_far_end();
         follow_births();
         std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
                          [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
@@ -40,10 +40,10 @@ private:
 
     [[nodiscard]] bool stopped() const { return stopped_; }
 
-    /// Searches from the beginning of the motion before, or from the requested start.
+    /// Searches from the start of the previous motion, or from the requested start.
     SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
         SteadyQuestion question = question_.family(p);
-        // The start of a limit cycle is arbitrary and useless for another one: each search uses the requested start.
+        // The start of a limit cycle is arbitrary and useless for another one: so each search uses the requested start.
         if (question.is_timeless()) return motion_of(question, near);
         if (!before && question.is_plain()) question.drive.start_at(question_.start);
         if (before) question = from_motion(std::move(question), *before, false);
@@ -245,8 +245,8 @@ private:
         }
         jump.to = jump.landed.status == SteadyStatus::none ? std::nan("") : jump.landed.amplitude;
         // A branch that grows without bound has reached a resonance without a motion.
-        constexpr double sky = 1e6;
-        if (jump.landed.status == SteadyStatus::steady && jump.from > sky * jump.to) return;
+        constexpr double unbounded_ratio = 1e6;
+        if (jump.landed.status == SteadyStatus::steady && jump.from > unbounded_ratio * jump.to) return;
         const double least = 1e-3 * std::max(jump.from, std::isnan(jump.to) ? 0 : jump.to);
         if (!stopped() && !(std::fabs(jump.from - jump.to) <= least)) curve_.jumps.push_back(jump);
     }
@@ -296,7 +296,7 @@ private:
         if (const auto circuit = circuit_of(p, motion, motion.periods)) add_branch(*circuit, p, motion, true);
     }
 
-    void look_from_far_end() {
+    void search_from_far_end() {
         const double p = question_.values.back();
         add_unless_known(p, motion_at(p, {}, false));
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);

@@ -71,13 +71,13 @@ private:
                question().body.spring().none() && !question().body.walls();
     }
 
-    /// Completes the answer for a motion of facts_.period that begins at this moment, and returns its state half a
-    /// period later; none if it cannot be run, and the search continues.
+    /// Completes the answer for a motion of facts_.period that begins at this moment. Returns its state half a period
+    /// later; empty if it cannot be run, and the search continues.
     std::optional<VectorXd> complete(const Moment& moment, double start);
     /// The same for a run that has settled up to its end and repeats after facts_.period.
     std::optional<VectorXd> complete_settled(const motion::Run& so_far);
     std::optional<VectorXd> complete_period(const Moment& from, motion::Run run, double period);
-    /// Completes the answer for bodies that rest or rotate steadily; `stands`: friction holds all.
+    /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
     void complete_rest(const motion::Run& run, bool stands);
 
     [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
@@ -147,20 +147,20 @@ VectorXd ReturnSearch::units_of(const Reach& reach) const {
 std::optional<Map::Return> ReturnSearch::begin() {
     const double period = question().repeats.period;
     // An action at the very beginning of a run would be lost, so returns begin at a quiet phase.
-    constexpr double nowhere = 0.3819660112501051;
+    constexpr double irrational_part = 0.3819660112501051;
     start_ = question().repeats.start;
     Reach reach;
     Moment now = runs_.first();
     if (has_acts(question().drive)) {
-        const auto run = stretch(now, start_, nowhere * period, reach);
+        const auto run = stretch(now, start_, irrational_part * period, reach);
         if (!run) return {};
         now = Runs::at_stop(*run);
-        start_ += nowhere * period;
+        start_ += irrational_part * period;
     }
     return measured_at(now);
 }
 
-/// Begins a period later, where the mode is known.
+/// Begins one period later, where the mode is known.
 std::optional<Map::Return> ReturnSearch::measured_at(const Moment& moment) {
     Reach reach;
     const auto run = stretch(moment, start_, question().repeats.period, reach);
@@ -178,7 +178,7 @@ double ReturnSearch::size_at(const Map::Return& place) const {
     return natural > 0 || is_free() ? std::max(size, y.head(n()).maxCoeff()) : size;
 }
 
-// ---- with sampled or delayed controllers
+// ---- sampled or delayed controllers
 
 /// Continues the run until it repeats: from period to period of drive and sampling, or with a delay but no period from
 /// passage to passage.
@@ -224,7 +224,8 @@ public:
     }
 
 private:
-    static constexpr double alike = 1e-7;    // relative: at the end of the search, a larger difference is not periodic
+    // relative: a larger difference at the end of the search counts as not periodic
+    static constexpr double alike = 1e-7;
     static constexpr double finest = 1e-12;  // relative rounding of runs
 
     /// Makes one more return; returns false at the end of the search.
@@ -248,9 +249,9 @@ private:
         }
         s_.largest_ = std::max(s_.largest_, size);
         sizes_.push_back(size);
-        constexpr double dead = 1e-11;  // part of the greatest motion: it dies out
+        constexpr double dead = 1e-11;  // relative to the greatest motion: a smaller one dies out
         small_ = size <= dead * s_.largest_ ? small_ + 1 : 0;
-        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return looks_elsewhere(reach);
+        if (length_ == 0 && run_.outcome != model::Outcome::stopped) return try_other_section(reach);
         t_ = run_.t_stop;
         times_.push_back(t_);
         seen_.push_back(seen(t_ - start));
@@ -277,14 +278,14 @@ private:
 
     /// Chooses another section after a stretch without a passage; returns false if the motion rests or the tries are
     /// used up.
-    bool looks_elsewhere(const Reach& reach) {
-        constexpr int most_looks = 40, most_longer = 24;
+    bool try_other_section(const Reach& reach) {
+        constexpr int most_tries = 40, most_longer = 24;
         const bool rests = small_ > 0 && s_.question().drive.states.empty();
         if (rests) s_.note_rest(run_, false);
-        if (rests || ++looks_ > most_looks) return false;
+        if (rests || ++tried_ > most_tries) return false;
         const Index widest = widest_of(reach, s_.chart_, s_.n());
         if (widest >= 0) passage_ = passage(s_.chart_, section(reach, widest), s_.runs_.system().named);
-        if (looks_ <= most_longer) stretch_ *= 1.3;
+        if (tried_ <= most_longer) stretch_ *= 1.3;
         seen_.clear();
         times_.clear();
         return true;
@@ -347,7 +348,7 @@ private:
         if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
-    /// Detects growth; a beating motion has equal maxima in both halves.
+    /// Detects growth. A beating motion has equal maxima in both halves.
     void judge_growth() {
         const auto half = sizes_.begin() + static_cast<std::ptrdiff_t>(sizes_.size() / 2);
         const double before = *std::max_element(sizes_.begin(), half + 1);
@@ -360,17 +361,17 @@ private:
 
     ReturnSearch& s_;
     double length_, delay_ = 0, stretch_;  // duration of a return, or 0; greatest delay; length of a run to a passage
-    /// The delay of the observation after common sampling instants, as rounding scatters the samples around these. Half
-    /// of the shortest interval later no controller samples.
+    /// The offset of observations from common sampling instants, because rounding scatters the samples around these.
+    /// Half of the shortest interval later no controller samples.
     double beside_ = model::never;
     bool timeless_;
     double t_;
     std::optional<model::WantedEvent> passage_;
-    int looks_ = 0;               // number of sections tried
+    int tried_ = 0;               // number of sections tried
     motion::Run run_;             // the last run
     std::vector<double> sizes_;   // sizes of all runs
-    std::size_t small_ = 0;       // number of last runs with hardly any motion
-    std::vector<VectorXd> seen_;  // at each return,
+    std::size_t small_ = 0;       // number of successive runs, up to the last, with hardly any motion
+    std::vector<VectorXd> seen_;  // observed numbers at each return,
     std::vector<double> times_;   // and its time
     VectorXd size_;               // scale of the observed numbers
 };
@@ -451,7 +452,7 @@ void ReturnSearch::note_rest(const motion::Run& run, bool stands) {
 /// Completes the answer for a closed motion; returns false if it cannot be run, or no run stays on it and `any` is
 /// false.
 bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) {
-    if (!(found.period > 0)) return false;  // a passage at once: the motion has nearly stopped
+    if (!(found.period > 0)) return false;  // an immediate passage: the motion has nearly stopped
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
     const bool forced = question().repeats.period > 0;
@@ -545,7 +546,7 @@ std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, motion
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
     const bool forced = question().repeats.period > 0;
-    if (!moves && !forced && question().settles < 0) return {};  // no cycle: a run will tell how it ends
+    if (!moves && !forced && question().settles < 0) return {};  // not a cycle: a further run decides how it ends
     facts_.outcome = run.outcome;
     facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
     facts_.period = moves || forced ? period : 0;

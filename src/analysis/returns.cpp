@@ -48,14 +48,14 @@ HeldMode opposite(HeldMode held) {
 
 /// Returns whether a shift of the start only shifts the whole run.
 bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
-    constexpr double by = 0.73;
+    constexpr double part_of_shift = 0.73;
     const double start = runs.question().repeats.start;
     Moment plain = runs.first(), shifted = plain;
-    shifted.y += by * shift;
+    shifted.y += part_of_shift * shift;
     const auto end = [&](const Moment& from) {
         return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
     };
-    const Eigen::VectorXd off = end(shifted) - by * shift - end(plain);
+    const Eigen::VectorXd off = end(shifted) - part_of_shift * shift - end(plain);
     return off.cwiseAbs().maxCoeff() <= 1e-9 * std::max(1.0, plain.y.cwiseAbs().maxCoeff());
 }
 
@@ -203,7 +203,7 @@ motion::Run Runs::go_on(const motion::Run& before, double start, double end, con
     }
     model::Drive drive = question_.drive;
     drive.events.push_back(*section);
-    const auto unwatched = [](const engine::Carry& carry) {  // without the user's events, which other runs do not have
+    const auto unwatched = [](const engine::Carry& carry) {  // removes the user's events, which other runs do not have
         auto copy = std::make_shared<engine::Carry>(carry);
         copy->watches.clear();
         return copy;
@@ -231,7 +231,7 @@ motion::Run Runs::run(const model::Drive& drive, double start, double end, const
                                       .longest = question_.longest,
                                       .keeps_torques = grid.count() > 0});  // only users see those with rows
     if (result.contradiction) contradiction_ = result.contradiction;
-    // A spring may overflow in a diverging motion; a function that fails has been reported.
+    // A spring may overflow in a diverging motion; failures of functions have been reported already.
     const bool flew_away = result.outcome == model::Outcome::excitation_not_finite && question_.is_plain() &&
                            !question_.body.spring().none() && !question_.drive.M().has_feedback() &&
                            question_.drive.states.empty();
@@ -349,7 +349,7 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
         mode ? runs_.allowed(*mode, units_.size()) : Eigen::MatrixXd::Identity(units_.size(), units_.size());
     Derivative found{Eigen::MatrixXd::Zero(n, n)};
     if (allowed.cols() == 0) return found;
-    // An orthonormal basis, within places, of the allowed directions in the section.
+    // An orthonormal basis of the allowed directions, within the section and in units of places.
     const algebra::Basis basis = algebra::orthonormal_basis(to_place * allowed);
     const double h = order == 2 ? 1e-5 : 3e-4;
     for (Index i = 0; i < basis.rank; ++i) {
@@ -370,7 +370,7 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
         const auto differ = [](const Slope& s) { return !s.alike && s.bend > little; };
         double step = h;
         std::optional<Slope> near = slope(step), far = order == 2 ? near : slope(2 * step);
-        // A grazing, a stop or a switch lies between both sides.
+        // If the events differ, a grazing, a stop or a switch lies between both sides.
         while (order != 2 && near && far && (differ(*near) || differ(*far))) {
             step /= 10;
             if (step < least) return {};

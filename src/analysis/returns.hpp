@@ -35,7 +35,7 @@ public:
     [[nodiscard]] model::Drive from(const Moment& moment, double start) const;
     [[nodiscard]] motion::Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
                                   const std::optional<model::WantedEvent>& section = {});
-    /// Continues another run with the memory of its controllers and delays; an empty one: from the start.
+    /// Continues another run with the memory of its controllers and delays; an empty run means from the start.
     [[nodiscard]] motion::Run go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
                                     const std::optional<model::WantedEvent>& section = {});
     [[nodiscard]] static Moment at_stop(const motion::Run& run);
@@ -54,10 +54,10 @@ private:
     motion::engine::Floor floor_;  ///< noise of the last run, for runs that begin almost at rest
 };
 
-/// The coordinates of returns: angles of rotating bodies are measured from another body.
+/// The coordinates of the return map; angles of rotating bodies are measured from another body.
 class Chart {
 public:
-    /// `from` of each body: the body from which its angle is measured; -1: the ground; itself: not measured.
+    /// `from` has for each body the body from which its angle is measured; -1: the ground; itself: not measured.
     explicit Chart(std::vector<Eigen::Index> from) : from_(std::move(from)) {}
 
     [[nodiscard]] bool measures(Eigen::Index k) const {
@@ -84,13 +84,13 @@ Chart chart_of(Runs& runs);
 /// measured numbers except that of the section, each in its unit.
 class Returns final : public Map {
 public:
-    /// A value of a measured number, passed upwards (way = 1) or downwards (-1).
+    /// The surface where a measured number has this value, passed upwards (way = 1) or downwards (-1).
     struct Section {
         Eigen::Index measured = 0;
         double place = 0, way = 1;
     };
 
-    /// A passage must come within `length`. Numbers that a place lacks are taken from `there`.
+    /// A passage must come within `length`. `there` supplies the numbers that a place does not contain.
     Returns(Runs& runs, const Chart& chart, double start, double length, const std::optional<Section>& section,
             Eigen::VectorXd units, Eigen::VectorXd there);
 
@@ -99,8 +99,8 @@ public:
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     /// The first return from a moment that need not be on the section.
     [[nodiscard]] Return arrival(const Moment& from);
-    /// Order 4 reduces its step if the motions on both sides have different events; none if that fails and the slopes
-    /// differ.
+    /// If the motions on both sides of a difference have different events, order 4 reduces its step; empty if that does
+    /// not help and the slopes differ.
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
     [[nodiscard]] double start() const { return start_; }
@@ -161,7 +161,8 @@ std::vector<Acting> acting_in(const SteadyQuestion& question);
 /// The common repetition of everything that drives the run: period 0 if nothing depends on time; none if unknown.
 /// Functions are sampled, as only the user knows their period.
 std::optional<Repetition> repetition_of(const SteadyQuestion& question);
-/// Compares all of it over one period with the next; the error names the two worst values that differ.
+/// Compares everything that drives the run over one period with the next; the error names the two values that differ
+/// most.
 std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Repetition& repeats);
 /// The question's `settles`; none if controllers and drive have no common period, or one that is too long.
 std::optional<double> settles_after(const SteadyQuestion& question);

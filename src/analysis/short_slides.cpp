@@ -16,8 +16,8 @@ std::optional<ShortSlides> ShortSlides::closed(const SteadyQuestion& question) {
     const auto sine = single_sine(question);
     if (!sine || sine->holding != sine->sliding || !(sine->spare > 0)) return {};
     const double turns = sine->r * sine->omega0 * question.repeats.period / (2 * half_load);
-    constexpr double once = 1e-12;
-    if (std::fabs(turns - 1) > once) return {};
+    constexpr double rounding_of_turns = 1e-12;
+    if (std::fabs(turns - 1) > rounding_of_turns) return {};
     ShortSlides slides(*sine);
     if (!slides.slide(0)) return {};
     slides.unit_ = slides.way(slides.end_) / 2;
@@ -34,8 +34,8 @@ bool ShortSlides::slide(double rest) {
     return rest >= 0 && start(sine_.spare + rest) && find_end();
 }
 
-/// Released from -y, the mass advances beyond 0. The derivative is the part of a shift that is left, with the sign of
-/// the opposite place.
+/// Released from -y, the mass advances beyond 0. The derivative is the fraction of a shift that remains, with the sign
+/// of the opposite place.
 Map::Return ShortSlides::operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& /*mode*/,
                                     int /*returns*/) {
     Return back{.to = from};
@@ -105,7 +105,8 @@ double ShortSlides::speed_by_square(double x) const {
     return sum;
 }
 
-/// The part of a shifted start that decays within x of free motion: the response to a constant load of 1.
+/// The fraction of a shift of the start that decays within x of free motion, which is the response to a constant load
+/// of 1.
 double ShortSlides::forgets(double x) const {
     double before = 0, now = 0, sum = 0, power = 1;  // terms n and n + 1 of the series, and x^n
     for (std::size_t n = 0; n + 2 < terms; ++n) {

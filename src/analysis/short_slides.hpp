@@ -13,10 +13,10 @@
 
 namespace dinal::analysis {
 
-/// From a place of rest to the opposite of the next one.
+/// Maps a place of rest to the opposite of the next one.
 class ShortSlides final : public Map {
 public:
-    /// At the fixed point; none if the slides are not short, or the motion may not be unique (Re > Rd).
+    /// Returns the map at its fixed point; none if the slides are not short, or the motion may not be unique (Re > Rd).
     static std::optional<ShortSlides> closed(const SteadyQuestion& question);
 
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
@@ -37,7 +37,7 @@ private:
     using Series = std::array<double, terms>;  // coefficients of powers of x
 
     explicit ShortSlides(const SingleSine& sine) : sine_(sine) {}
-    /// Slides from a place of rest; returns false if that is not short.
+    /// Computes the slide from a place of rest; returns false if it is not short.
     bool slide(double rest);
     bool start(double spare);
     [[nodiscard]] bool find_end();
@@ -51,7 +51,7 @@ private:
     double rest_ = 0;     ///< the mass is released forward from -rest_
     double release_ = 0;  ///< phase of the release
     double end_ = 0;      ///< end of the slide, x since the release
-    Series series_{};     ///< way since the release,
+    Series series_{};     ///< displacement since the release,
     Series speed_{};      ///< and its speed times x
 };
 

@@ -57,8 +57,8 @@ public:
           free_turn_(std::exp(-sine.zeta * step_) * phasor(root_.imag() * step_)),
           answer_(theory::magnification(sine.r, sine.zeta) * phasor(-theory::phase_lag(sine.r, sine.zeta))) {}
     static bool applies_to(const SingleSine& sine) {
-        constexpr double heavy = 0.99, resonant = 1e-6;  // beyond these, other closed forms would be needed
-        return sine.zeta < heavy && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
+        constexpr double most_damping = 0.99, resonant = 1e-6;  // beyond these, other closed forms would be needed
+        return sine.zeta < most_damping && (sine.zeta > resonant || std::fabs(sine.r - 1) > resonant);
     }
 
     /// Starts from velocity 0 at this place and phase of the load; way is +1 or -1.
@@ -81,8 +81,7 @@ public:
                 -sine_.r * sine_.r * load.imag() + product(root_, rate).real()};
     }
 
-    /// The duration of the slide until the velocity is zero; none if it does not start, or takes longer than `most` (in
-    /// x).
+    /// The time until the velocity is zero; none if the slide does not start, or takes longer than `most` (in x).
     [[nodiscard]] std::optional<double> first_zero(double most) const {
         Complex load = forced_, own = free_;
         double before = 0, v_before = 0;
@@ -110,10 +109,10 @@ public:
 private:
     using Complex = std::complex<double>;
 
-    /// Newton's method between a point of the slide and one behind its end.
+    /// Newton's method between a point of the slide and one after its end.
     [[nodiscard]] double zero_between(double from, double to, double x) const {
         constexpr int most_steps = 60;
-        constexpr double nearly = 1e-6;  // the next step leaves only rounding
+        constexpr double nearly = 1e-6;  // the next step reduces the error to rounding
         const auto newton = [](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
         for (int i = 0; i < most_steps; ++i) {
             const Sliding now = at(x);
@@ -141,7 +140,7 @@ std::optional<model::State> sliding_start(const SingleSine& sine) {
     const double r = sine.r, half = half_load / r;
     const auto motion = theory::DenHartog(r, sine.zeta).without_stops(sine.sliding);
     if (!motion || !(motion->amplitude > 0)) return {};
-    // The load is greatest at a phase of pi/2, theta later by its lag; half a period later the motion is opposite.
+    // The load is greatest at the phase pi/2, theta later by its lag; half a period later the motion is opposite.
     const double crest = half_load / 2 + motion->lag;
     if (sine.sliding > 0 && SineArcs::applies_to(sine)) {
         SineArcs slide(sine);
@@ -190,8 +189,8 @@ public:
             sticks[i] = *next;
             for (std::size_t n = 1; n <= i; ++n) {
                 const Stick &a = sticks[i - n], &b = sticks[i];
-                constexpr double about = 0.3;  // close enough for the secant method
-                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < about)) continue;
+                constexpr double near_enough = 0.3;  // close enough for the secant method
+                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < near_enough)) continue;
                 if (const auto y = place_of_rest(a, b, n)) return at_start(*y, n);
                 break;
             }

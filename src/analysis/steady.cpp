@@ -80,7 +80,7 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
         question.body.stiffness() > 0 ? question.body.natural_frequency() : 2 * std::numbers::pi / period;
-    // At resonance a motion may be far larger than the one found, and the mass may also adhere.
+    // Near resonance a motion may be far larger than the known one, and the mass may also adhere.
     const bool asks = question.drive.M().has_feedback() || question.is_timeless();
     const auto M = asks ? TorqueRange{} : extremes(question.drive.M(), question.repeats);
     const double stiff = question.body.inertia() * omega * omega;
@@ -101,20 +101,20 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
 
 namespace {
 
-/// For one plain body.
+/// Other motions of one plain body.
 std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
     if (!known.is_found() || known.unique.value_or(false) || family) return {};
     double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
-    // At rest only the initial state indicates the size of motions.
+    // At rest only the initial state indicates the size of other motions.
     if (known.stands())
         size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
     const auto alike = [size](const SteadyMotion& a, const SteadyMotion& b) { return are_alike(a, b, size); };
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
-/// For all bodies.
+/// Other motions of a system of bodies.
 std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;

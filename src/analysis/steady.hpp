@@ -45,7 +45,7 @@ struct SteadyQuestion {
 
     /// A question about one plain body.
     static SteadyQuestion of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats);
-    /// The same question about this body or link.
+    /// This question as seen from another body or link.
     [[nodiscard]] SteadyQuestion seen_at(std::size_t which) const;
 
     [[nodiscard]] bool is_timeless() const { return repeats.period == 0; }
@@ -87,7 +87,7 @@ struct SteadyMotion {
     bool differentiable = false;  ///< whether there are multipliers
     bool stable = false, symmetric = false;
     std::optional<bool> unique;                              ///< none: unknown, search from other starts
-    std::pair<double, double> rest;                          ///< range in which it may stand, if it adheres
+    std::pair<double, double> rest;                          ///< range of angles at which it may rest, if it adheres
     double growth = 0;                                       ///< growth of the amplitude in a period of M
     int maps = 0;                                            ///< number of periods that were run
     double residual = 0;                                     ///< residual of the fixed point, in amplitudes
@@ -104,11 +104,11 @@ struct SteadyMotion {
 /// The steady motion that a run from the start of the question leads to, as seen from its joint.
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// The same from a start near the answer, such as after a small change of a parameter.
+/// The same from a start near the answer, such as the motion before a small change of a parameter.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// Other motions, found from other starts, each once with a question whose start leads to it. Not searched if no motion
-/// was found, or if it is unique or one of a family.
+/// Other motions, found from other starts, each with a question whose start leads to it. Empty if `known` is not a
+/// motion, is unique, or belongs to a family.
 struct OtherMotion {
     SteadyQuestion question;
     SteadyMotion motion;

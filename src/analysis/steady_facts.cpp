@@ -22,7 +22,8 @@ bool acts_evenly(const model::Friction& law) {
            (!law.depends_on_speed() || (is_even(1e-3) && is_even(0.1) && is_even(1) && is_even(10)));
 }
 
-/// Error of multipliers after a stop: a disturbance is multiplied by factors such as cosines, nearly without error.
+/// The error of multipliers after a stop: a disturbance is only multiplied by factors such as cosines, nearly without
+/// error.
 constexpr double kept_within = 1e-12;
 
 std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
@@ -54,7 +55,7 @@ double edge_of_rest(const model::Lowered& system, double here, double way, const
     double inside = 0, outside = 1e-9 * std::max(std::fabs(here), 1e-9);
     for (int i = 0; holds(outside); ++i) {
         constexpr int farthest = 200;
-        if (i == farthest) return here;  // nothing pulls it back
+        if (i == farthest) return here;  // no spring limits the angle
         inside = outside, outside *= 2;
     }
     while (outside - inside > 1e-15 * (std::fabs(here) + outside)) {
@@ -114,7 +115,7 @@ double miss_one(const std::vector<std::complex<double>>& multipliers) {
 bool is_alike_both_ways(const SteadyQuestion& question) {
     const model::Drive& drive = question.drive;
     if (question.is_timeless() || !drive.states.empty() || !drive.events.empty()) return false;
-    const bool by_numbers = question.is_plain();  // only then can feedback be asked at the opposite state
+    const bool by_numbers = question.is_plain();  // only then can feedback be evaluated at the opposite state
     const auto turns = [&](const model::Excitation& what) {
         if (what.components().empty()) return true;
         return !model::has_memory(what) && (by_numbers || !what.has_feedback()) &&

@@ -9,7 +9,7 @@
 
 namespace dinal::analysis {
 
-/// Returns whether the map never moves two states apart, so that there is one motion or a family. Requires equal
+/// Returns whether the distance of two states never grows, so that there is one motion or a family. Requires equal
 /// sliding and holding torques, no walls, and M, belt and base that depend on time only. For several bodies, the energy
 /// of the difference of two motions cannot grow in any joint.
 bool contracts(const SteadyQuestion& question);
@@ -46,10 +46,11 @@ std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& question
 /// The range of angles around `here` in which friction holds the mass throughout the period.
 std::pair<double, double> rest_of(const SteadyQuestion& question, double here);
 
-/// How much the multipliers of a motion say.
+/// The reliability of the multipliers of a motion.
 struct Judged {
-    bool alone = true;    ///< whether they hold on all sides, and nothing else repeats, such as a rotation
-    double error = 1e-5;  ///< of the multipliers
+    /// whether they describe all disturbances, and there is no further freedom, such as a rotation
+    bool alone = true;
+    double error = 1e-5;  ///< error of the multipliers
 };
 /// Concludes from the multipliers whether the motion is stable, and whether there are others.
 void judge(const SteadyQuestion& question, std::vector<std::complex<double>> multipliers, const Judged& by,

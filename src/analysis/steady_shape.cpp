@@ -251,7 +251,7 @@ private:
         if (!motion_.differentiable) return;
         double largest = 0;
         for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
-        constexpr double next_to_nothing = 1e-10;  // what differences of runs tell no better
+        constexpr double next_to_nothing = 1e-10;  // the accuracy of multipliers from differences of runs
         if (!motion_.stable) {
             say("It is unstable: a disturbance grows by a factor of {:.6g} in a period, so no run stays on it.",
                 largest);

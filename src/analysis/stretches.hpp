@@ -9,6 +9,7 @@
 
 namespace dinal::analysis {
 
+/// A half cycle or a stick.
 struct Stretch {
     double from = 0, to = 0;
     model::State begin = {}, end = {};  ///< the velocity is 0 at events other than impacts

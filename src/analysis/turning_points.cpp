@@ -14,7 +14,7 @@ double noise_of(std::span<const double> theta) {
     }
     const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
     std::nth_element(differences.begin(), middle, differences.end());
-    return *middle / (0.6745 * std::sqrt(70.0));  // median of |x|; 1 + 16 + 36 + 16 + 1 squared weights
+    return *middle / (0.6745 * std::sqrt(70.0));  // median of |x|, and 1 + 16 + 36 + 16 + 1, the sum of squared weights
 }
 
 bool is_noisy(std::span<const double> values) {

@@ -9,7 +9,8 @@ namespace dinal::analysis {
 
 /// The standard deviation of the noise of a smooth, about evenly sampled motion, from fourth differences.
 double noise_of(std::span<const double> theta);
-/// Returns whether values are noisy: half the samples of a smooth curve would show far more noise.
+/// Returns whether the values are noisy: if every second sample of a smooth curve is left out, its apparent noise grows
+/// a lot.
 bool is_noisy(std::span<const double> values);
 
 /// Detects a clipped record: the numbers of samples exactly at its least and greatest value, in rows of four or more. A

@@ -54,7 +54,7 @@ animation::Track asked_track(lua_State* L, const lua::Options& options, const Ru
                              const animation::Take& take, const model::Units& units) {
     const model::Excitation* belt = belt_of(*run);
     const plots::RunData data{run, &run->result, alone(*run), units};
-    RunCall call(L, *run);  // between rows the integrator evaluates the excitation
+    RunCall call(L, *run);  // user functions may be called between the rows
     auto track = animation::track_of(data, belt, take, [] { return !lua::interrupt_requested(); });
     call.check();
     if (lua::interrupt_requested()) {
@@ -81,7 +81,7 @@ animation::Scene asked_scene(lua_State* L, const lua::Options& options, const Ru
             bodies.push_back(std::move(track));
         }
     }
-    // Without a spring the angles belong to rotating parts, however far they turn in this run.
+    // Without springs, angles belong to rotating parts, even if they turn little in this run.
     const bool angles = units.theta.empty() || units.theta == "rad";
     const auto links_begin = system.joints.begin() + static_cast<std::ptrdiff_t>(system.bodies.size());
     const bool is_free = std::all_of(system.joints.begin(), links_begin, [](const model::Joint& joint) {

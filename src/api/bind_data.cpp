@@ -34,7 +34,7 @@
 
 namespace dinal::api {
 
-// The documentation of data, and the options of its methods.
+// Documentation of data, and the options of its methods.
 
 /// d:plot{ x, y }.
 inline constexpr text::Option data_plot_options[] = {
@@ -572,7 +572,7 @@ int save_rows(lua_State* L, const std::vector<std::string>& comments) {
     lua::refuse_in_worker(L, "d:save");
     const DataHandle data = self(L, "d:save(\"table.csv\")");
     const std::string file = file_argument(L, 2, "d:save");
-    if (text::ending_of(file) != ".csv") {  // safe mode promises that no script writes other files
+    if (text::ending_of(file) != ".csv") {  // safe mode guarantees that scripts write no other files
         lua::fail(L, "d:save", {.sentence = fmt::format("the name '{}' must end in .csv", file), .culprit = file});
     }
     std::vector<files::NamedColumn> columns;
@@ -618,9 +618,9 @@ namespace {
 
 // ---- maps: a column in shades over the grid of two others
 
-constexpr int vermilion = 2;  // visible on both the dark and the bright end
+constexpr int vermilion = 2;  // colour that is visible on both dark and bright shades
 
-/// Returns whether the value has a place on the axis.
+/// Returns whether the value can be drawn on the axis.
 bool is_drawn(double value, bool logarithmic) {
     return std::fabs(value) <= 1e300 && (value > 0 || !logarithmic);
 }
@@ -647,7 +647,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     };
     const bool xlog = is_asked("xlog"), ylog = is_asked("ylog");
     plots::Shades shades{.x = different_values(x, xlog), .y = different_values(y, ylog), .z = {}, .label = names[2]};
-    constexpr double sparse = 16;  // places of the grid for each row; scattered points have no neighbours
+    constexpr double sparse = 16;  // maximum number of grid points per row; scattered points would form a huge grid
     const double places = static_cast<double>(shades.x.size()) * static_cast<double>(shades.y.size());
     if (shades.x.empty() || shades.y.empty() || places > sparse * static_cast<double>(z.size())) {
         options.fail(
@@ -700,7 +700,7 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     return figure;
 }
 
-/// The rows of a map: of several branches at one place, the stable one with the greatest z.
+/// The rows of a map. If several branches exist at one point, the stable one with the greatest z is used.
 std::array<plots::Numbers, 3> stable_rows(const Data& data, const std::array<plots::Numbers, 3>& columns) {
     const DataColumn* stable = data.pieces_of.empty() ? nullptr : data.find(data.dotted_of);
     if (stable == nullptr || stable->numbers() == nullptr) return columns;
@@ -749,9 +749,9 @@ std::string label_of(const Data& data, const std::string& name) {
     return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
 }
 
-constexpr double spectrum_decades = 1e-6;  // part of the largest amplitude: the range of a plotted spectrum
+constexpr double spectrum_decades = 1e-6;  // smallest plotted amplitude of a spectrum, relative to the largest
 
-/// The frequencies with amplitudes in that range, if a good part of the spectrum is lower.
+/// The frequencies with amplitudes in that range, if they cover only part of the spectrum.
 std::optional<plots::Interval> telling_frequencies(const Data& data, const plots::Curve& curve) {
     if (!data.is_spectrum || curve.size() == 0) return std::nullopt;
     double greatest = 0, last = 0;

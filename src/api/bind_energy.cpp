@@ -1,4 +1,4 @@
-// The energy of a run, as run:energy() returns it: in total, for each half cycle, and as columns beside the rows.
+// The energy balance returned by run:energy(): in total, for each half cycle, and as columns for the rows.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct RunEnergy {
     std::vector<analysis::Energy> parts = {};  ///< the energies of which it is the sum
     Eigen::MatrixXd columns = {};              ///< at the rows; computed on first use
 };
-// Shared: a column in Lua is a view that keeps it alive.
+// Shared, because a column in Lua is a view of these values and keeps them alive.
 using EnergyHandle = std::shared_ptr<RunEnergy>;
 
 bool is_part(const RunEnergy& energy) {
@@ -51,7 +51,7 @@ void make_columns(lua_State* L, RunEnergy& energy) {
         call.check();
         energy.columns = energy.columns.size() == 0 ? own : energy.columns + own;
     }
-    if (is_part(energy)) energy.columns.col(error_column) *= -1;  // so that it is the work of the other bodies
+    if (is_part(energy)) energy.columns.col(error_column) *= -1;  // the negative error is the work of the other bodies
     lua::note_external_memory(L, static_cast<std::size_t>(energy.columns.size()) * sizeof(double));
 }
 

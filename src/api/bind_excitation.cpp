@@ -35,7 +35,7 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
     if (lua_type(L, index) == LUA_TNUMBER) {
         term = model::Constant{lua_tonumber(L, index)};
     } else if (lua::is_callable(L, index)) {
-        const std::size_t name = what.rfind(": ");  // its errors name the function: "M.motor returned nil"
+        const std::size_t name = what.rfind(": ");  // errors contain the name of the function: "M.motor returned nil"
         lua::FunctionRole role;
         if (name != std::string_view::npos) role.name = what.substr(name + 2);
         const auto function = std::make_shared<lua::LuaFunction>(L, index, std::move(role));
@@ -54,8 +54,8 @@ namespace {
 
 constexpr double no_end = 1e300;
 
-/// Returns whether the terms equal the formula between these times, to its own rounding and that of the times.
-/// Replacements of a formula are compared with it before a run.
+/// Returns whether terms and formula agree between these times, to the rounding of both. Every replacement of a formula
+/// is tested in this way before a run.
 bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon(),
                      allowed = 1e-12;  // relative, for the values
@@ -72,7 +72,7 @@ bool agree(model::Formula& formula, const model::Excitation& terms, double from,
     return worst <= allowed * greatest;
 }
 
-/// The same for periodic terms: in the middles of the pieces of the first, second and last period.
+/// The same test for periodic terms, in the middles of the pieces of the first, second and last period.
 bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& middles, double period,
            double to) {
     constexpr double allowed = 1e-12, far = 1000;  // relative, for the values; period number without an end
@@ -90,11 +90,10 @@ bool agree(model::Formula& formula, const model::Excitation& terms, const std::v
     return worst <= allowed * greatest;
 }
 
-/// A periodic function that is constant between its breaks, as native terms: the differences from its first piece are
-/// square waves.
+/// A periodic, piecewise constant function as native terms: each difference from its first piece becomes a square wave.
 std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double to, double period) {
     constexpr int most_pieces = 50;
-    constexpr double least = 1e-9;  // part of a period: by rounding the last piece may end earlier
+    constexpr double least = 1e-9;  // fraction of a period by which rounding may shorten the last piece
     const double first = function.next_break(from), end = first + period * (1 - least);
     std::vector<model::Term> made;
     std::vector<double> middles;
@@ -125,7 +124,7 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
     return agree(*function.formula(), sum, middles, period, to) ? std::optional(sum) : std::nullopt;
 }
 
-/// The function as native terms in a time span, piece by piece; none if that fails.
+/// The function as native terms in a time span, one for each piece; empty if that fails.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
     if (!(function.next_condition(from) < to)) {
@@ -151,7 +150,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     return sum;
 }
 
-/// The component's formula function without declared breaks, or nullptr.
+/// The formula function of the component, if it has no declared breaks; otherwise nullptr.
 lua::LuaFunction* read_function(const model::Component& component) {
     const auto* script = std::get_if<model::Scripted>(&component.term);
     auto* function = script == nullptr ? nullptr : dynamic_cast<lua::LuaFunction*>(script->function.get());
@@ -237,7 +236,7 @@ int value(lua_State* L) {
     if (lua_istable(L, 2) || lua::test<lua::Vector>(L, 2) != nullptr) return values(L);
     const double t = lua::finite_argument(L, 2, "e:value(t): t");
     const model::State state = state_arguments(L, 3);
-    if (!excitation.has_script()) {  // nothing else runs in Lua, so what is read stays so
+    if (!excitation.has_script()) {  // no other Lua code runs, so formulas stay valid
         lua_pushnumber(L, excitation.value(t));
         return 1;
     }
@@ -292,7 +291,7 @@ std::optional<std::string> obstacle(lua_State* L, const model::Excitation& excit
     return {};
 }
 
-/// What a run knows of this function between its samples.
+/// Describes how a run evaluates this function and what it can miss between samples.
 std::string proof_of(model::UserFunction& function) {
     if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return "called at its instants only";
     const auto* delayed = dynamic_cast<const model::DelayedController*>(&function);

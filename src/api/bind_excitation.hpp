@@ -14,13 +14,13 @@ namespace dinal::api {
 /// error for anything else; it begins with `what` and names `option` if given.
 model::Excitation to_excitation(lua_State* L, int index, std::string_view what, std::string_view option = "");
 
-/// M with its functions replaced by native terms, to rounding, in a time span. None if that is impossible for some
-/// function, or if other Lua code runs meanwhile, which may change what M depends on.
+/// M with its functions replaced by native terms, equal to rounding in this time span. Empty if that is impossible for
+/// some function, or if other Lua code runs during the run and may change variables of M.
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::System& system, const model::Drive& drive,
                                              double from, double to);
-/// The same of M alone, if no other function runs.
+/// The same for M alone, if no other function runs.
 std::optional<model::Excitation> terms_alone(lua_State* L, const model::Excitation& M, double from, double to);
-/// The same M with the proven periods of its functions.
+/// M with the proven periods of its functions declared.
 model::Excitation with_periods(lua_State* L, const model::Excitation& M);
 
 /// Pushes the excitation of one term, or raises its error.

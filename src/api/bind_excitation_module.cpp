@@ -142,7 +142,7 @@ inline constexpr lua::Member controller_functions[] = {
 int push_term(lua_State* L, model::Term term) {
     auto made = model::Excitation::make(std::move(term));
     if (!made) {
-        lua::raise(L, made.error());  // it begins with its call
+        lua::raise(L, made.error());  // the message begins with the call
     }
     lua::push(L, std::move(made).value());
     return 1;
@@ -199,7 +199,7 @@ int samples_from_file(lua_State* L) {
     const lua::Options options(L, 2, file_call);
     auto read = files::read_columns(file);
     if (lua::interrupt_requested()) {
-        lua::raise_interrupted(L);  // the file was read in part only
+        lua::raise_interrupted(L);  // the file was read only in part
     }
     const files::Table table = options.value_or_fail(files::table_of(options.value_or_fail(std::move(read))));
     if (table.values.rows() == 0) {
@@ -215,8 +215,8 @@ int samples_from_file(lua_State* L) {
         const auto values = table.values.col(column);
         return std::vector<double>(values.data(), values.data() + values.size());
     };
-    // Columns by name, so that the text stays valid if the file gets another column; in files without names, numbers
-    // are found by these names, too.
+    // Columns are referenced by name, so that the text stays valid if the file gets another column. Files without names
+    // accept these names for their column numbers.
     const auto name = [&](Eigen::Index column) { return text::quoted(table.names[static_cast<std::size_t>(column)]); };
     model::Samples points;
     options.fill(points);

@@ -116,7 +116,8 @@ struct FitAnswer {
     analysis::IdentifyQuestion question;
     analysis::Identified found;
     std::vector<std::pair<std::string, double>> values, errors;
-    std::vector<std::pair<std::string, std::vector<double>>> silent;  ///< what is not determined, and its bounds
+    /// parameters that the record does not determine, and their bounds
+    std::vector<std::pair<std::string, std::vector<double>>> silent;
     std::optional<model::System> system;
     bool from_guess = false;  ///< whether a system was given
     model::Units units;       ///< units of the record; without a unit for M if only ratios to I are found
@@ -240,21 +241,21 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         const auto place = static_cast<std::size_t>(which);
         if (!held[place] || question.given[place]) continue;
         if (which != Unknown::I && which != Unknown::k) {
-            question.given[place] = 0;  // an Re below Rd counts as Rd
+            question.given[place] = 0;  // an Re below Rd is raised to Rd
         } else if (question.M) {
             options.fail({fmt::format("{} is neither given nor in free", analysis::unknown_names[place])});
         }
     }
 }
 
-// identify{ system = ..., free = { ... } }: fits parameters of any system, and of tables that user functions read, from
-// a guess to measured angles, velocities or accelerations.
+// identify{ system = ..., free = { ... } }: fits parameters of any system, and fields of tables that user functions
+// read, to measured angles, velocities or accelerations, from a guess.
 
 enum class Sign { any, not_negative, positive };
-/// Receives a number with its name, and may change it. Returns whether it has.
+/// Receives a number with its name and may change it. Returns whether it did.
 using Change = std::function<bool(const std::string& name, double& number, Sign sign)>;
 
-/// Visits Rd and Re. Re follows Rd if both were equal and Re is not set by itself.
+/// Visits Rd and Re. If both were equal and only Rd changes, Re stays equal to it.
 void change_torques(model::laws::Coulomb& law, const std::string& before, const Change& change) {
     const bool one_number = law.kinetic == law.breakaway;
     change(before + "Rd", law.kinetic, Sign::not_negative);
@@ -264,7 +265,7 @@ void change_torques(model::laws::Coulomb& law, const std::string& before, const 
 
 template <class Law>
 void change_rows(Law& law, std::span<const text::Option> rows, const Change& change) {
-    double Rd = 0;  // the first row
+    double Rd = 0;  // set by the first row
     for (const text::Option& row : rows) {
         text::OptionValue now = row.filled.get(&law);
         auto* number = std::get_if<double>(&now);
@@ -390,7 +391,7 @@ struct MeasuredColumn {
     std::string name;  ///< column name in a run
     std::vector<double> numbers = {};
     double range = 0;
-    double size = 1;  ///< its unit in the fit: its noise, or a small part of its range
+    double size = 1;  ///< unit in the fit: the noise, or a small fraction of the range
 };
 
 class AnyFit {
@@ -578,7 +579,7 @@ private:
             }
             if (velocity0_[body]) continue;
             Fitted one{.name = before + "velocity0", .start = first_velocity(body), .typical = 0.1 * speed_};
-            // Friction may hold a body at rest, where the derivative by its velocity is zero.
+            // At rest under friction the derivative with respect to the velocity is zero.
             const bool is_measured = measured(body, Measure::theta) != nullptr || one.start != 0;
             if (!is_measured) one.other_starts = {speed_, -speed_};
             free_.push_back(std::move(one));
@@ -674,7 +675,8 @@ private:
         return false;
     }
 
-    /// For "p.Kp": finds the variable p of a function in M, belt, base or a rate of a state, or the global p.
+    /// Resolves a name such as "p.Kp": p is an upvalue of a function in M, belt, base or a rate of a state, or else a
+    /// global.
     void find_table(const std::string& name, const std::vector<std::string>& known, Fitted& one) {
         const std::size_t dot = name.find('.');
         const std::string variable = name.substr(0, dot);
@@ -711,13 +713,13 @@ private:
              .cure = text::did_you_mean(name, known)});
     }
 
-    /// Pushes a field without metamethods, as a library refuses unknown names.
+    /// Pushes a field without metamethods, because a strict table may raise errors for unknown names.
     int push_field(const Fitted& one) {
         lua_pushstring(L_, one.key.c_str());
         return lua_rawget(L_, one.table);
     }
 
-    /// Pushes the table that functions inside the value on the top know by this name.
+    /// Pushes the table that functions inside the value on the top use under this name. Returns false if there is none.
     bool push_variable(const std::string& variable, int depth) {
         const int value = lua_gettop(L_);
         if (const auto* excitation = lua::test<model::Excitation>(L_, value)) {
@@ -757,7 +759,7 @@ private:
         lua_setfield(L_, one.table, one.key.c_str());
     }
 
-    /// Sets the tables, and returns the system with these parameters.
+    /// Writes fitted values to the tables, and returns the system with the fitted parameters.
     model::System with(const Eigen::VectorXd& p) {
         model::System system = system_;
         for (std::size_t j = 0; j < system.joints.size(); ++j) {
@@ -796,15 +798,15 @@ private:
         return run != nullptr && static_cast<std::size_t>((*run)->result.size()) == rows;
     }
 
-    // ---- what the model may lack
+    // ---- torques that the model may lack
 
-    /// A torque beside M on a body or link.
+    /// A torque added to M on a body or link.
     struct Added {
         std::size_t joint;
         model::Excitation torque;
     };
 
-    /// What the model may lack at the joints that are measured or have a fitted number, and drifting zeros.
+    /// Possible missing torques at joints that are measured or have a fitted parameter, and drifts of measured zeros.
     std::vector<analysis::Structure> structures(const Eigen::VectorXd& p, double noise, bool is_white) {
         std::vector<analysis::Structure> found;
         std::vector<double> times;
@@ -858,7 +860,7 @@ private:
         found.push_back({analysis::Follows::theta, changes->rightCols(analysis::theta_torques), {}});
     }
 
-    /// Pushes M with the torque that is added to it.
+    /// Pushes M plus the added torque.
     void push_excitation() {
         options_.push("M");
         if (!added_) return;
@@ -952,7 +954,7 @@ private:
         fit.system = system;
         for (std::size_t i = 0; i < free_.size(); ++i) {
             const auto place = static_cast<Eigen::Index>(i);
-            double value = found.value[place];  // by rounding, the breakaway torque may be the smaller one
+            double value = found.value[place];  // rounding may make the fitted Re smaller than Rd
             for (std::size_t j = 0; j < system.joints.size(); ++j) {
                 change_numbers(system, j, [&](const std::string& name, const double& number, Sign /*sign*/) {
                     if (name == free_[i].name) value = number;
@@ -984,7 +986,8 @@ private:
         if (fit.found.noise > rounding * first.range) fit.found.widening = found.widening;
     }
 
-    /// Two errors to each side. A number that does not change the motion has no bounds but its least value.
+    /// Sets bounds of two standard errors. A parameter that does not affect the motion is only bounded by its least
+    /// value.
     void add_bounds(const Fitted& one, double value, const analysis::GeneralFit& found, Eigen::Index place,
                     FitAnswer& fit) {
         const double error = found.open[static_cast<std::size_t>(place)] ? INFINITY : 2 * found.error[place];
@@ -1011,14 +1014,14 @@ private:
     std::string failure_;         ///< error of the last run
 };
 
-// The answer.
+// The result.
 
 void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
     const auto add = [&fit](std::string_view name, double value, double error) {
         fit.values.emplace_back(name, value);
         const double known =
-            fit.found.has_errors ? std::max(error, 1e-15 * std::fabs(value)) : withheld;  // at least some ulps
+            fit.found.has_errors ? std::max(error, 1e-15 * std::fabs(value)) : withheld;  // at least a few ulps
         fit.errors.emplace_back(name, error > 0 ? known : 0);
     };
     const auto given = [&fit](Unknown which) {
@@ -1195,13 +1198,13 @@ constexpr std::array<const char*, 3> causes{
     "is the law of friction another one, such as friction.stribeck, or a given C or Rd wrong?",
     "is the spring nonlinear, or a given k wrong?", "does the zero of the instrument drift, or a parameter change?"};
 
-/// The sentences about how far the fit can be believed.
+/// The sentences about the reliability of the fit.
 std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     std::vector<std::string> notes;
     const analysis::Identified& found = fit.found;
     constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
     const double Rd = found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * found.error[kinetic]) {  // a record without noise leaves rounding
+    if (Re < Rd * (1 - 1e-9) - 3 * found.error[kinetic]) {  // tolerance for rounding in a record without noise
         notes.push_back(fmt::format(
             "Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
             "Rd; leave Re out, or give Rd as well",
@@ -1268,7 +1271,7 @@ std::string fit_summary(const FitAnswer& fit) {
     }
     const double k = fit.found.value[static_cast<std::size_t>(Unknown::k)];
     for (const auto& [name, bounds] : unlisted) {
-        if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1
+        if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1 determines only the ratio
             const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
             text += fmt::format("\n  {:<{}} {}", "Re_over_k", width,
                                 text_of_bounds(ratios, unit_of_value(fit.units, "Rd_over_k")));
@@ -1286,14 +1289,14 @@ std::vector<std::string> silent_names(const FitAnswer& fit) {
     return names;
 }
 
-/// Those that are not withheld.
+/// The errors that are not withheld.
 std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
     auto errors = fit.errors;
     std::erase_if(errors, [](const auto& error) { return std::isnan(error.second); });
     return errors;
 }
 
-/// What the residual follows; nothing if it is noise as far as one can see.
+/// The quantity that the residual depends on; none if it looks like noise.
 std::optional<std::string> misfit_of_fit(const FitAnswer& fit) {
     if (fit.found.is_noise) return {};
     if (fit.found.misfit) return std::string(analysis::follows_names[static_cast<std::size_t>(*fit.found.misfit)]);

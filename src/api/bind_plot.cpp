@@ -54,7 +54,7 @@ plots::Numbers numbers_on_top(lua_State* L, std::string_view what) {
         if (lua_rawgeti(L, -1, static_cast<lua_Integer>(i) + 1) != LUA_TNUMBER) {
             lua::raise_got(L, -1, what, fmt::format("{}[{}] must be a number", what, i + 1));
         }
-        values[i] = lua_tonumber(L, -1);  // nan is a gap
+        values[i] = lua_tonumber(L, -1);  // nan marks a gap
         lua_pop(L, 1);
     }
     return plots::Numbers::own(std::move(values));
@@ -79,7 +79,8 @@ plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::
 
 plots::Curve curve_with_options(lua_State* L, int item, lua_Integer listed, const std::string& call) {
     lua::push_copy(L, item, listed);
-    const text::Call named{call.c_str(), curve_call.example, curve_call.options};  // errors name the curve
+    // errors contain the name of the curve
+    const text::Call named{call.c_str(), curve_call.example, curve_call.options};
     const lua::Options options(L, lua_gettop(L), named);
     plots::Curve curve;
     options.fill(curve);
@@ -317,14 +318,15 @@ motion::BetweenRows between_rows(const LuaRun& run) {
     const model::Excitation* M = nullptr;
     if (run.of_body()) M = run.terms ? &*run.terms : &run.origin->drive.loads[run.place()];
     const bool of_state =
-        run.origin && run.system().is_plain() && run.origin->drive.states.empty();  // theta and velocity determine M
+        // whether theta and velocity determine M
+        run.origin && run.system().is_plain() && run.origin->drive.states.empty();
     const bool known = M != nullptr && model::is_whole(run.result.outcome) && !model::has_memory(*M) &&
                        (of_state || !M->has_feedback());
     return {run.result, known ? M : nullptr};
 }
 
 std::shared_ptr<const motion::Run> drawn_run(lua_State* L, const RunHandle& run, const std::vector<double>& window) {
-    RunCall call(L, *run);  // M may be a function
+    RunCall call(L, *run);  // M may call user functions
     const motion::Run& whole = run->result;
     const motion::BetweenRows between = between_rows(*run);
     if (!between.any()) return {run, &whole};
@@ -390,7 +392,7 @@ int plot_vectors(lua_State* L) {
 
 namespace {
 
-/// The bodies along their links, then the links.
+/// The parts in drawing order: bodies along their links, then the links.
 std::vector<RunHandle> parts_to_draw(const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
     const model::System& system = run->system();
@@ -439,7 +441,7 @@ int plot_run(lua_State* L) {
     const std::vector<std::string> ys = asked_columns(L, options, "y", run);
     const bool over_time = x.empty() || x.front() == "t";
     const plots::RunData data = data_of(L, options, run, over_time ? options.numbers("xlim") : std::vector<double>());
-    // A user who labels the axis wants one axis.
+    // One label means one axis.
     const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
     std::vector<plots::Figure> figures = options.value_or_fail(plots::column_figures(
         data, {.x = x.empty() ? "" : x.front(), .ys = ys, .labels = asked_labels(L, options), .axes = axes}));
@@ -547,7 +549,7 @@ plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& as
     return {size[0], size[1]};
 }
 
-enum class FileKind { svg, png, pdf, txt };  // the first ones in the order of plots::PictureKind
+enum class FileKind { svg, png, pdf, txt };  // the first three are in the order of plots::PictureKind
 
 FileKind kind_of(const lua::Options& options, std::string_view file) {
     constexpr std::array<std::string_view, 4> endings{".svg", ".png", ".pdf", ".txt"};
@@ -574,7 +576,8 @@ void write_picture(lua_State* L, const lua::Options& options, const TargetOption
                    const std::vector<plots::Figure>& figures, const plots::TextFormat& format) {
     const FileKind kind = kind_of(options, *asked.file);
     const plots::PaperSize size = asked_size(options, asked);
-    files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));  // fail before the work
+    // created before the work, so that errors come early
+    files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));
     const auto bytes = content(figures, kind, size, format);
     if (lua::interrupt_requested()) {
         lua::raise_interrupted(L);
@@ -700,7 +703,7 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
         return 0;
     }
     const std::string text = plots::text_plot(figures, format);
-    lua_writestring(text.data(), text.size());  // as print() does
+    lua_writestring(text.data(), text.size());  // Lua's own output, as in print()
     return 0;
 }
 

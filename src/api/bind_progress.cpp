@@ -31,7 +31,7 @@ Loop& loop_self(lua_State* L) {
     return *loop;
 }
 
-/// The iterator of the for loop; receives the Loop and the number of the step before.
+/// The iterator of the for loop; receives the Loop and the number of the previous step.
 int next_step(lua_State* L) {
     Loop& loop = loop_self(L);
     const lua_Integer step = lua_tointeger(L, 2) + 1;
@@ -87,11 +87,11 @@ int progress(lua_State* L) {
                                                                : static_cast<lua_Integer>(*steps),
                                    .list = lua_type(L, 1) != LUA_TNUMBER});
     loop.progress.reset(new terminal::Progress(
-        terminal::Progress::of_steps(label, *steps)));  // NOLINT: it cannot be moved, only made here
+        terminal::Progress::of_steps(label, *steps)));  // NOLINT: Progress cannot be moved, only constructed in place
     lua_pushvalue(L, 1);
     lua_setiuservalue(L, -2, 1);
     lua_pushinteger(L, 0);
-    lua_pushvalue(L, -2);  // the closing value removes the line whichever way the loop ends
+    lua_pushvalue(L, -2);  // the closing value removes the progress line however the loop ends
     return 4;
 }
 

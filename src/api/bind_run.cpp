@@ -68,7 +68,7 @@ std::string line_of(const LuaRun& run) {
 
 std::string story_of_run(lua_State* L, const RunHandle& handle) {
     const LuaRun& run = *handle;
-    RunCall call(L, run);  // spring, belt and base may be user functions
+    RunCall call(L, run);  // user functions of spring, belt and base may be called
     const std::string text = run.origin ? story_of_simulated(L, handle) : analysis::explain_rows(run.result, run.units);
     call.check();
     return run.readings.empty() ? text : text + '\n' + text::wrapped(run.readings);
@@ -724,10 +724,10 @@ constexpr lua::Member run_values[] = {
                       return (run.result.gap > 0) ? std::optional(run.result.gap) : std::nullopt;
                   }>,
      {"run.gap -> number or nil",
-      "In how long a time a pulse of a Lua function may have been missed. If all functions are read, it is the longest "
-      "stretch on which they were not proven to do nothing but what was seen; nil if there is none. Otherwise it is the "
-      "longest time between two samples: a longer pulse was seen (see breaks of excitation.scripted and narrowest of "
-      "integrator.spectral).",
+      "The longest duration of a pulse of a Lua function that may have been missed. If all functions are read, it is "
+      "the longest stretch on which the absence of such a pulse was not proven; nil if there is none. Otherwise it "
+      "is the longest time between two samples: a longer pulse was found (see breaks of excitation.scripted and "
+      "narrowest of integrator.spectral).",
       "run = nondimensional{}:simulate{ M = math.sin, t_end = 2, dt = 1, integrator = integrator.rk4{ h = 0.01 } }\n"
       "print(run.gap)  --> 0.005"}},
     {lua::a_value<RunHandle, [](const LuaRun& run) { return run.result.names(); }>,

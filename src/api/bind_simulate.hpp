@@ -29,7 +29,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
              const Compute& compute);
 
 /// Refuses sampled controllers in M that still have the memory of an earlier run. Returns a function to be called with
-/// the address of the finished run. `goes_on`: whether it continues another run.
+/// the address of the finished run. `goes_on` says whether the run continues another one.
 std::function<void(const void*)> watched_memories(lua_State* L, const lua::Options& options, const model::Excitation& M,
                                                   bool goes_on);
 

@@ -61,7 +61,7 @@ int nondimensional(lua_State* L) {
     Ratios ratios;
     options.fill(ratios);
     const double breakaway_ratio = ratios.breakaway.value_or(ratios.friction);
-    if (breakaway_ratio < ratios.friction) {  // the core's error would name Rd and Re, which the user has not given
+    if (breakaway_ratio < ratios.friction) {  // the model's error would name Rd and Re, which the user has not given
         options.fail("breakaway_ratio", fmt::format("breakaway_ratio = {} must be at least friction_ratio = {}",
                                                     breakaway_ratio, ratios.friction));
     }
@@ -92,7 +92,7 @@ auto of_body(const SystemHandle& system) {
     return std::invoke(fact, body_of(system));
 }
 
-/// The same for facts that require k; nil without it.
+/// The same for a fact that requires k; nil without a spring.
 template <auto fact>
 auto of_spring(const SystemHandle& system) {
     const model::Oscillator body = body_of(system);

@@ -31,7 +31,7 @@ namespace dinal::api {
 
 namespace {
 
-// ---- the options, a row each, and the calls that use them
+// ---- options, one row each, and the calls that use them
 
 namespace theory_options {
 

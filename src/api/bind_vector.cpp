@@ -25,7 +25,7 @@ namespace {
 using lua::Vector;
 using Values = std::span<const double>;
 
-using Numbers = std::vector<double>;  // for a new vector
+using Numbers = std::vector<double>;  // used for new vectors
 using text::Error;
 using text::Expected;
 
@@ -103,7 +103,7 @@ Operands operands(lua_State* L, const char* symbol) {
         lua::raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
                                   a.vector->size(), b.vector->size()));
     }
-    if (a.vector == nullptr && b.vector == nullptr) {  // possible through debug.getmetatable
+    if (a.vector == nullptr && b.vector == nullptr) {  // possible only through debug.getmetatable
         lua::raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
     }
     return {a, b, (a.vector != nullptr ? a : b).vector->size()};
@@ -205,7 +205,7 @@ int masked(lua_State* L) {
                                 "brackets; for more use v[v:find(function(x) return x > 0 and x < 1 end)]",
                     .call = "v"});
     }
-    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // false in v[not (v > 0)]
+    const bool wanted = (lua_toboolean(L, 2) != 0) == last_comparison.all;  // false for v[not (v > 0)]
     lua::make_room(L, v.size() * sizeof(double));
     std::vector<double> result;
     for (std::size_t i = 0; i < v.size(); ++i) {

@@ -1,4 +1,4 @@
-// Systems of any bodies and links, and what drives them, as Lua writes them.
+// Systems of bodies and links, and their drives, as specified in Lua.
 #pragma once
 
 #include <functional>
@@ -29,7 +29,7 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
 void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive);
 
 std::vector<std::string> body_names(const model::System& system);
-/// Pushes the table of options that makes the body or link again.
+/// Pushes the table of options that constructs the body or link.
 void push_joint(lua_State* L, const model::System& system, std::size_t joint);
 /// The single body as an oscillator. Fails for named bodies, and if friction varies.
 text::Expected<model::Oscillator> oscillator_of(const model::System& system);
@@ -37,15 +37,15 @@ text::Expected<model::Oscillator> oscillator_of(const model::System& system);
 std::size_t joint_named(lua_State* L, std::string_view name, const model::System& system, const char* what,
                         const lua::Class& of);
 
-/// Returns whether all functions were read as formulas, so that pulses can only hide where the engine reports it.
-/// Conditions on the motion count if they were `located`.
+/// Returns whether all functions were read as formulas, so that only pulses reported by the engine may be missed.
+/// `located`: conditions on the motion were located.
 [[nodiscard]] bool sees_all(const model::System& system, const model::Drive& drive, bool located);
 
-/// Sentences on the evaluation of each function in M, belt and base; `native`: M became a sum of native terms.
+/// Sentences on the evaluation of each function in M, belt and base. `native`: M was replaced by a sum of native terms.
 [[nodiscard]] std::string readings_of(const model::System& system, const model::Drive& drive, bool located,
                                       bool native);
 
-/// Returns whether a system with names has this field; other fields give way to a body or link of that name.
+/// Returns whether a system with names has this field itself; other fields give way to a body or link of that name.
 bool is_of_whole(std::string_view field);
 /// Pushes the body or link as a separate system.
 int push_alone(lua_State* L, std::string_view call, const model::System& system, std::size_t joint);

@@ -57,8 +57,8 @@ struct Data {
     std::string heading = {};                  ///< first line of its text; by default the numbers of rows and columns
     std::string points_of = {};                ///< column that d:plot() draws as points by default
     std::string points_over = {};              ///< default x of these points; empty: the first column
-    std::string pieces_of = {};                ///< column whose changes interrupt lines in d:plot()
-    std::string dotted_of = {};                ///< column whose zeros make lines dotted
+    std::string pieces_of = {};                ///< column that divides the lines of d:plot() where its value changes
+    std::string dotted_of = {};                ///< column that makes lines of d:plot() dotted where it is 0
     bool is_spectrum = false;                  ///< whether d:plot() has a logarithmic axis
     std::vector<std::string> parameters = {};  ///< columns that span a grid of points, the fastest last
     std::vector<DataCompanion> companions = {};
@@ -114,7 +114,7 @@ Data table_of(const List& list, const ListColumn<Get>&... columns) {
 /// The units of columns; empty if unknown.
 struct ColumnUnits {
     explicit ColumnUnits(const model::Units& units);
-    std::optional<model::Units> named;  ///< nothing for the usual units, which are not written
+    std::optional<model::Units> named;  ///< none for the usual units, which are not written
     std::string t, theta, M, speed, frequency;
 
     /// The unit of a column of a run; empty for a state.

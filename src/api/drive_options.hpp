@@ -39,7 +39,7 @@ inline constexpr text::Call event_call{
     "events[1]", "{ when = function(t, theta, velocity, z) return theta - 1 end, name = \"limit\" }", event_options};
 
 inline constexpr const char* by_body_wanted = "a table by body, such as { load = 1 }";
-/// A user's own variables, and the motion of surfaces and support.
+/// States defined by a user, and the motion of surfaces and support.
 inline constexpr text::Option states_option[] = {
     {.name = "states",
      .meaning = "variables that are integrated with the motion: { NAME = { start = 0, rate = function(t, "
@@ -94,7 +94,7 @@ std::vector<model::WantedEvent> read_events(lua_State* L, const lua::Options& op
 /// Reads a function of time alone.
 model::Excitation read_motion(lua_State* L, const lua::Options& options, const char* name);
 
-/// Raises an error if a relay in M observes a name that is not known; `M`: the user's name of the excitation.
+/// Raises an error if a relay in M observes an unknown name. `M` is the user's name of the excitation.
 void check_relays(const lua::Options& options, const model::Excitation& excitation, std::vector<std::string> known,
                   const std::string& M = "M");
 

@@ -229,7 +229,7 @@ std::size_t body_index(const lua::Options& options, const model::System& system,
                   .cure = name.empty() ? "" : text::did_you_mean(name, names)});
 }
 
-/// Takes the bodies and weights of a link out of the table on the top.
+/// Removes the bodies and weights of a link from the table on the top and returns them.
 std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& options, const model::System& system,
                                         const std::string& link) {
     std::vector<model::Weight> weights;
@@ -424,7 +424,7 @@ private:
         options_.push(name);
         model::Excitation value = to_excitation(L_, -1, fmt::format("{}: {}", call_, name), name);
         lua_pop(L_, 1);
-        // Only controllers in M are sampled at their instants.
+        // Sampling instants are supported for controllers in M only.
         if (model::has_memory(value)) {
             options_.fail(name,
                           fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
@@ -441,7 +441,7 @@ private:
         if (options_.has(other)) options_.fail(other, "friction and Rd exclude each other; give one of them");
     }
 
-    /// A constant load becomes part of the law; with bristles it scales the state.
+    /// Merges a constant load into the law, except for bristles, whose load stays separate.
     model::ContactFriction by_law(const model::Friction& law) {
         friction_.law = law;
         if (const auto* slider = law.as<model::laws::Jenkins>()) friction_.sliders = {*slider}, friction_.law = {};
@@ -453,7 +453,7 @@ private:
     }
     void refuse_load() { options_.fail("normal", "the normal load of freewheel and jenkins must be a number"); }
 
-    // The following two pop the option `friction`.
+    // The following two functions pop the option `friction`.
     model::ContactFriction by_list() {
         for (const char* other : {"Rd", "Re"}) exclude(other);
         const model::Friction law = read_list(L_, options_, friction_);
@@ -473,7 +473,7 @@ private:
                                                                  .of_speed = true});
         exclude("Rd");
         lua_pop(L_, 1);
-        number("Re");  // fails outside of its range
+        number("Re");  // raises an error if out of range
         if (auto holding = varying("Re")) friction_.holding = {holding, holding};
         return friction_;
     }
@@ -481,7 +481,7 @@ private:
     /// Torques that vary with time.
     model::ContactFriction by_torques() {
         auto sliding = varying("Rd"), holding = varying("Re");
-        if (!sliding) {  // nothing brakes, but something holds
+        if (!sliding) {  // only breakaway friction is given
             sliding = model::Excitation::make(model::Constant{0}).value();
         }
         friction_.sliding = {sliding, sliding};

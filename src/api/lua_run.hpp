@@ -43,7 +43,7 @@ struct LuaRun {
     [[nodiscard]] bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
 };
 
-/// A call of Lua for the functions of a run: they get the motion by the names of its bodies and states.
+/// Sets up calls of user functions of a run, which receive the motion by the names of its bodies and states.
 class RunCall : public lua::CallState {
 public:
     RunCall(lua_State* L, const LuaRun& run);
@@ -94,7 +94,7 @@ std::string line_of(const LuaRun& run);
 
 /// The text of run:explain(); raises errors of a user's spring.
 std::string story_of_run(lua_State* L, const RunHandle& handle);
-/// Lua text that makes the run again, as lines; or the comments of the file from which it was read.
+/// Lua text that repeats the run, as lines; or the comments of the file from which it was read.
 std::vector<std::string> repeat_lines(const LuaRun& run);
 /// The requested t_end, or the last requested time; otherwise the end at which a stopped run should have ended.
 double asked_end(const lua::Options& options, const MoreTime& asked, double stopped, double wanted);

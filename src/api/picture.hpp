@@ -70,7 +70,7 @@ inline constexpr text::Option figure_options[] = {
     {.name = "equal", .meaning = "one unit is as long on both axes", .filled = text::fills<&FigureOptions::equal>},
     {.name = "axes", .meaning = "false leaves only the curves", .filled = text::fills<&FigureOptions::axes>},
     {.name = "ends",
-     .meaning = "in a file the names of lines stand where these end, not in the legend",
+     .meaning = "in a file, puts the names of lines at their ends, not in the legend",
      .filled = text::fills<&FigureOptions::ends>},
 };
 

@@ -389,7 +389,8 @@ private:
         for (const char* column : {"stable", "branch", "status", "lag", "peak", "stops", "stuck", "amplitude"}) {
             const std::string_view known = column;
             const bool own = known == "stable" || known == "branch" || known == "status";
-            const bool harmonic = known == "amplitude" && !options_.has("at");  // its column is M0
+            // its column is called M0, so there is no conflict
+            const bool harmonic = known == "amplitude" && !options_.has("at");
             if (name != known || (named && !own) || harmonic) continue;
             options_.fail("over",
                           fmt::format("'{}' is a column of the result: give the parameter another name", column));

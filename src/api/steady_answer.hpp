@@ -72,7 +72,7 @@ struct Steady {
     analysis::SteadyQuestion question;
     analysis::SteadyMotion motion;
     std::optional<analysis::SteadyShape> shape = {};  ///< computed on first use
-    /// For all bodies, from other starts, once searched.
+    /// The other motions of all bodies, once they have been searched.
     std::optional<std::vector<std::shared_ptr<Steady>>> others = {};
     RunHandle run = {};                  ///< one period of a motion that is not plain; null at rest
     std::shared_ptr<Steady> whole = {};  ///< the motion of all bodies, if this is one body or link
@@ -91,7 +91,7 @@ inline double greatest_angle(const analysis::SteadyMotion& motion) {
     return std::max(std::fabs(motion.low), std::fabs(motion.high));
 }
 
-/// Calls the work, which may evaluate functions, and raises their errors.
+/// Calls `work`, which may evaluate user functions, and raises their errors.
 template <class Work>
 void asking(lua_State* L, Work work) {
     lua::CallState call(L);

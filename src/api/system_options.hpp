@@ -90,7 +90,7 @@ inline constexpr text::Option bodies_and_links[] = {
 inline constexpr auto system_options =
     text::joined(body_numbers, friction_options, spring_and_walls, bodies_and_links, model::units_option);
 
-/// The rows for a change: nothing is required, nothing has a default.
+/// The rows for a change of a system, in which nothing is required or has a default.
 constexpr auto none_needed(auto rows) {
     for (text::Option& row : rows) row.otherwise = text::its_own, row.filled.initial = nullptr;
     return rows;

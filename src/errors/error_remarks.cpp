@@ -25,7 +25,7 @@ namespace dinal::errors {
 
 namespace {
 
-// A value alone on a line of a script, which only the prompt accepts.
+// Remarks on a value alone on a line of a script, which only the prompt accepts.
 
 bool compiles(lua_State* L, const std::string& text) {
     const bool good = luaL_loadbufferx(L, text.data(), text.size(), "=part", "t") == LUA_OK;
@@ -182,7 +182,7 @@ std::vector<std::string> suspects(const lua::LuaMessage& message) {
 }
 
 /// "\n  10 | x = sytem{}\n     |     ^^^^^", with the mark below the first suspect found. Empty if the line is
-/// unavailable, or was just typed and has no suspect.
+/// unavailable, or if it is the only one, just typed, and has no suspect.
 std::string excerpt(const SourceText& source, int line, const std::vector<std::string>& suspects) {
     const std::string_view statement = source.statement(line);
     auto mark = marked(statement, suspects);
@@ -215,7 +215,7 @@ std::string_view statement_of(const std::optional<SourceText>& source, int line)
     return source ? source->statement(line) : std::string_view();
 }
 
-/// The remarks on an error of ours or of Lua.
+/// The remarks on an error of dinal or of Lua.
 template <class Error>
 lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const std::optional<SourceText>& source,
                      int line) {

@@ -1,5 +1,5 @@
 // Additions to an error message: the source line with a mark, a likely spelling, and the time at which M was evaluated.
-// Reads the facts of our own errors, and parses Lua's.
+// Uses the stored facts of dinal's errors, and parses Lua's messages.
 #pragma once
 
 #include "lua/error_memory.hpp"

@@ -423,7 +423,7 @@ std::string printed_sign(const lua::SyntaxMessage& message, std::string_view sta
     return "; names and signs of Lua are in plain letters: theta, pi, omega";
 }
 
-/// The call of the function on the top of the stack: with braces for options, or parentheses.
+/// How the function on the top of the stack is called: with braces for options, or parentheses.
 std::string called_as(lua_State* L, std::string_view name) {
     const lua::Documented found = lua::documented(L, -1);
     const lua::Doc* doc = found.member != nullptr ? &found.member->doc : nullptr;
@@ -434,7 +434,7 @@ std::string called_as(lua_State* L, std::string_view name) {
                   : "; a call needs parentheses: " + std::string(name) + "(...)";
 }
 
-/// The same for a global function; "" if there is none.
+/// How a global function is called; "" if there is none.
 std::string call_of_global(lua_State* L, std::string_view name) {
     std::string call = lua::push_global(L, name) == LUA_TFUNCTION ? called_as(L, name) : "";
     lua_pop(L, 1);
@@ -485,7 +485,7 @@ std::string misspelt_keyword(const Stumble& stumble) {
 std::string missing_star(const Stumble& stumble) {
     if (stumble.message.complaint != "malformed number") return "";
     std::string_view word = stumble.message.near;
-    for (const lua::Token& token : stumble.all) {  // the message breaks off at 2p
+    for (const lua::Token& token : stumble.all) {  // the message is cut off at 2p
         word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
     }
     const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());

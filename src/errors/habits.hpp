@@ -14,15 +14,15 @@ namespace dinal::errors {
 /// error.
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
-/// The occasion to look for words and signs of other languages: in a chunk that does not compile, first, last if
-/// nothing else explains it, or where an expression continues; in a running chunk; an unknown name, or one typed at the
+/// When words and signs of other languages are looked for: in a chunk that does not compile (first, last if nothing
+/// else explains the error, or between two expressions), in a running chunk, in an unknown name, or in one typed at the
 /// prompt.
 enum class Seen { first, last, between, running, unknown, typed };
 
-/// The same for these words and signs, whatever the message: v[1:3], f"{x}", lambda x, disp.
+/// The remark on such words and signs, whatever the message: v[1:3], f"{x}", lambda x, disp.
 std::string foreign_tokens(std::string_view statement, Seen seen);
 
-/// The same for a run-time error.
+/// The remark on a run-time error.
 std::string running_habit(const text::Error& error, std::string_view statement);
 std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
 

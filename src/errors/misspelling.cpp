@@ -62,7 +62,7 @@ bool is_object_of_ours(lua_State* L, int index) {
     return lua_isuserdata(L, index) != 0 && lua::documented(L, index).owner != nullptr;
 }
 
-/// A Lua function for a field of an object of ours, so that no user code runs.
+/// A Lua function that reads a field of an object of dinal, so that no user code runs.
 int field(lua_State* L) {
     lua_gettable(L, 1);
     return 1;
@@ -170,7 +170,7 @@ std::string qualified(lua_State* L, std::string_view name, Use use) {
     return text::did_you_mean_one_of(found);
 }
 
-/// Returns whether the value on the top is an object of ours with this field, such as a system or a run.
+/// Returns whether the value on the top is an object of dinal with this field, such as a system or a run.
 bool has_field(lua_State* L, std::string_view name) {
     if (lua_isuserdata(L, -1) == 0) return false;
     const lua::Documented found = lua::documented(L, -1);
@@ -404,7 +404,7 @@ bool passes_its_owner(lua_State* L, std::string_view name) {
     return false;
 }
 
-/// A Lua function for the length of an object of ours, so that no user code runs.
+/// A Lua function that returns the length of an object of dinal, so that no user code runs.
 int length(lua_State* L) {
     lua_pushinteger(L, luaL_len(L, 1));
     return 1;

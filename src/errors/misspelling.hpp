@@ -17,7 +17,8 @@ struct Advice {
     std::string culprit = {};     ///< the cause found: "; 'tend' is nil"
 };
 
-/// `frame` is the function of the error, or nullptr; `statement` its text as far as known.
+/// Returns the hint for an error. `frame` is the function of the error, or nullptr; `statement` is its text as far as
+/// known.
 Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement);
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 

@@ -207,7 +207,8 @@ private:
         });
     }
 
-    /// Handles "0,5" in quotes. Three digits after a comma may be thousands, unless other values decide.
+    /// Returns whether commas in quoted numbers such as "0,5" are decimal. Three digits after a comma may mean
+    /// thousands, so other values decide.
     [[nodiscard]] bool has_decimal_commas_in_quotes() {
         bool tells = false;
         for (const Row& row : rows_) {
@@ -273,8 +274,8 @@ private:
         return std::nullopt;
     }
 
-    /// Returns whether the second line has units: words and gaps, with numbers below each word. A column without a unit
-    /// may have words.
+    /// Returns whether the second line may contain units: it has words and gaps, and each word has only numbers below
+    /// it.
     [[nodiscard]] bool may_be_units() const {
         std::vector<std::string_view> units, fields;
         split(rows_.front().text, separator_, units);

@@ -13,7 +13,7 @@
 
 namespace dinal::files {
 
-/// A column has numbers if every field is one, or empty (nan), or "nan", "inf"; otherwise words.
+/// A column is numeric if every field is a number, empty (nan), "nan" or "inf"; otherwise it has words.
 struct ReadColumn {
     std::string name;
     std::vector<double> numbers;

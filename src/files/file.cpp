@@ -98,7 +98,7 @@ text::Error can_not_write(const std::string& path, const std::string& why) {
     return {.sentence = "cannot write '" + path + "': " + why, .culprit = path};
 }
 
-/// The system would silently cut the name at a NUL.
+/// Returns whether the name contains a NUL, at which the system would silently cut it.
 bool has_nul(const std::string& path) {
     return path.find('\0') != std::string::npos;
 }

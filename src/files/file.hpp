@@ -1,4 +1,4 @@
-// Whole files: read at once into memory, and written so that a failure leaves neither half a file nor loses the old
+// Whole files: read at once into memory, and written so that a failure neither leaves half a file nor loses the old
 // one.
 #pragma once
 

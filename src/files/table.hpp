@@ -33,7 +33,7 @@ enum class Gaps { refused, written };
 std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
                                        const Eigen::Ref<const Eigen::MatrixXd>& values);
 
-/// The place of the only name that is this one with a unit in brackets after it: "t (s)" or "t [s]" for "t".
+/// The index of the only name that is this one followed by a unit in brackets: "t (s)" or "t [s]" for "t".
 std::optional<std::size_t> place_without_unit(std::span<const std::string> names, std::string_view name);
 
 /// The index (from 0) of the column with that name, with or without its unit, or number (from 1).

@@ -143,7 +143,7 @@ std::string likely(std::string_view word) {
     return hint.empty() ? text::did_you_mean(word, words) : hint;
 }
 
-/// The part of run.energy behind the last separator; "" without one.
+/// The part of a name after the last separator, "energy" in run.energy; "" without one.
 std::string_view last_name(std::string_view words) {
     const std::size_t separator = words.find_last_of(".:");
     return separator == std::string_view::npos ? "" : words.substr(separator + 1);

@@ -13,13 +13,13 @@ namespace dinal::help {
 /// A member's name as users write it: "sys:simulate", "sys.omega0", "excitation.harmonic", "system".
 std::string written_name(const Section& section, const lua::Member& member);
 
-/// The same, with operators as they are used: "v + w, v + number".
+/// The name as it is listed, with operators as they are used: "v + w, v + number".
 std::string listed_name(const Section& section, const lua::Member& member);
 
 /// Signature, summary, example, and related entries.
 std::string member_text(const Section& section, const lua::Member& member, const terminal::Display& screen);
 
-/// The same for a class or module, and one line for each member.
+/// Text about a class or module, and one line for each member.
 std::string class_text(const Section& section, const terminal::Display& screen);
 
 /// A line with a name and the first sentence of its summary.

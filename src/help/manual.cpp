@@ -93,7 +93,7 @@ std::string listed(const OptionLine& line) {
     return fmt::format("- `{}`: {}\n", line.name, without_limits(line.meaning));
 }
 
-/// The meaning of an option without its default and need: sys:with has the options of system without these.
+/// The meaning of an option without its default and "needed", which differ between calls such as system and sys:with.
 std::string sense(const OptionLine& line) {
     std::string meaning = without_limits(line.meaning);
     const std::size_t needed = meaning.rfind("needed)");
@@ -129,8 +129,9 @@ std::vector<Listed> listed_options() {
     return all;
 }
 
-/// The options that stand in the same sense in several calls, in the order in which they come first. A short one is
-/// read more quickly than looked for: it counts only from three calls on, and if no other shared one has its name.
+/// The options that several calls have in the same sense, in the order of their first appearance. Short ones are shared
+/// only by three or more calls, and only if no other shared option has the same name, because reading them is quicker
+/// than looking them up.
 std::vector<Listed> shared_options() {
     const std::vector<Listed> all = listed_options();
     const auto is_long = [](const Listed& each) { return each.calls > 1 && each.words.size() >= 40; };

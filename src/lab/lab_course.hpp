@@ -1,6 +1,6 @@
 // The lab course (src/lab): tasks of a student number and judging of answers, in a Lua state of its own.
 //
-// The build scrambles the course, so that neither a look into the program nor a script reveals an answer. It is not
+// The build scrambles the course, so that neither searching the program file nor a script reveals an answer. It is not
 // secret from those who read the source or disassemble the program (docs/lab/instructor.md).
 #pragma once
 

@@ -300,7 +300,7 @@ int new_report(lua_State* L) {
     return 1;
 }
 
-/// The text of a value as print shows it; user's tables with their contents.
+/// The text of a value as print shows it; tables of the user include their contents.
 std::string printed(lua_State* L, int index) {
     const bool says_itself = luaL_getmetafield(L, index, "__tostring") != LUA_TNIL;
     lua_pop(L, says_itself ? 1 : 0);

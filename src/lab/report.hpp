@@ -64,7 +64,7 @@ MarkdownReport markdown_of(const Report& report, const std::string& stem);
 
 // --report: turns the output and pictures of a script into a page.
 
-/// While it lives, standard output and shown pictures are collected in a report, in their order.
+/// While this object lives, standard output and shown pictures are collected in a report, in their order.
 class ScriptReport {
 public:
     /// `errors`: the script's standard error, collected elsewhere.

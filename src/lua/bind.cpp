@@ -177,7 +177,7 @@ std::string where(lua_State* L) {
 
 void raise(lua_State* L, const text::Error& error) {
     {
-        // It may contain names of columns and files, and a script may print caught errors.
+        // the message may contain names of columns and files, and a script may print caught errors
         const std::string message = text::harmless(where(L) + error.message());
         remember_facts(L, error);
         lua_settop(L, 0);  // arguments are no longer needed

@@ -30,7 +30,7 @@ namespace dinal::lua {
 
 /// The documentation of a member, stored once.
 struct Doc {
-    const char* signature;  ///< calling convention: "sys:simulate{ OPTIONS } -> run"
+    const char* signature;  ///< call as a user writes it: "sys:simulate{ OPTIONS } -> run"
     const char* summary;    ///< one or more sentences, units included
     const char* example;    ///< Lua that runs on its own; `-->` is followed by what the line prints
     /// The options for each OPTIONS in the signature, in this order.
@@ -44,7 +44,8 @@ enum class Kind {
     metamethod,  ///< __add, __len, __call ...: for the objects of a class, or for the table of a module
 };
 
-/// A member's function and kind, made by a_method<at>, a_field<...>, a_function<...> or a_metamethod<...>("__len").
+/// The function and kind of a member, made by a_method<at>, a_field<...>, a_function<...> or
+/// a_metamethod<...>("__len").
 struct Binding {
     lua_CFunction call;  ///< always guarded<...>
     Kind kind;
@@ -115,7 +116,7 @@ T value_or_raise(lua_State* L, std::string_view call, text::Expected<T> expected
     return std::move(expected).value();
 }
 
-/// Pushes a text and returns 1, the number of results.
+/// Pushes a text and returns 1, the number of Lua results.
 int push_text(lua_State* L, std::string_view text);
 /// Push a field of the table at `index`, or a global, and return its type. Raw: metamethods are a user's code, and a
 /// strict _G raises errors.
@@ -124,7 +125,7 @@ int push_global(lua_State* L, std::string_view name);
 /// Pushes the table under this key of the registry; makes it if there is none, with weak keys.
 void push_weak_table(lua_State* L, const void* key);
 
-/// Sets a field of the table on the top.
+/// Sets a numeric field of the table on the top of the stack.
 void set_number(lua_State* L, const char* name, double value);
 
 /// Describes a value for a sentence: "nil", "a table", "the string "1"", "a system", "nan".
@@ -139,7 +140,7 @@ std::string written(lua_State* L, int index);
 namespace detail {
 int raise_message_on_top(lua_State* L);
 [[noreturn]] void raise_no_object(lua_State* L, std::string_view call);
-/// The signature of the running function of ours: "run:explain()".
+/// The signature of the running bound function: "run:explain()".
 std::string signature_of_running(lua_State* L);
 void push_message(lua_State* L, const char* text);
 }  // namespace detail

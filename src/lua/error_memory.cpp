@@ -11,17 +11,17 @@ namespace {
 
 const char memory_key = 0;  // registry key of the ErrorMemory; false after lua_close
 
-constexpr std::size_t most_facts = 20;  // an error kept while so many others are raised loses its mark
+constexpr std::size_t most_facts = 20;  // number of errors whose facts are kept
 
 struct ErrorMemory {
     std::deque<text::Error> facts;  // the latest first
     Witness witness = nullptr;
     Remarks remarks;            // about the error value stored as the userdata's user value
-    bool is_witnessed = false;  // whether there is such a value, which may be nil
+    bool is_witnessed = false;  // whether an error value is stored, which may be nil
     bool raised_again = false;
 };
 
-/// The finalizer. Takes the registry's object, as the argument is the user's when he calls it by hand.
+/// The finalizer. Uses the registry's object, because a user who calls this function passes an arbitrary argument.
 int forget(lua_State* L) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &memory_key) == LUA_TUSERDATA) {
         std::destroy_at(static_cast<ErrorMemory*>(lua_touserdata(L, -1)));
@@ -54,7 +54,7 @@ ErrorMemory* memory_of(lua_State* L) {
     return memory;
 }
 
-/// The memory if it is about the error value at the index, otherwise nullptr.
+/// The memory if its remarks belong to the error value at the index, otherwise nullptr.
 ErrorMemory* memory_about(lua_State* L, int index) {
     index = lua_absindex(L, index);
     ErrorMemory* memory = push_memory(L);

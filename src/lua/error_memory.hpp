@@ -1,7 +1,7 @@
 // Data about an error besides its message, from where it is raised to where it is printed.
 //
-// A user's pcall sees a plain string, or the value he raised himself. So the data are stored in the Lua state: the
-// facts of our own errors, and the remarks on an error in M made while M was still on the stack.
+// A user's pcall sees a plain string, or the value that the user raised. So the data are stored in the Lua state: facts
+// about dinal's own errors, and remarks on an error in M, made while M was still on the stack.
 #pragma once
 
 #include <string>
@@ -12,11 +12,11 @@
 
 namespace dinal::lua {
 
-/// Stores the facts of an error of ours when it is raised. Only the last few are kept.
+/// Stores the facts of an error raised by dinal. Only the last few are kept.
 void remember_facts(lua_State* L, const text::Error& error);
 
-/// The error of ours behind a message; nullptr for errors of Lua or of the user. A message raised again may have a
-/// position (of coroutine.wrap or error) before it and a traceback after it.
+/// The error of dinal behind a message; nullptr for errors of Lua or of the user. A message raised again may have a
+/// position in front (by coroutine.wrap or error) and a traceback at the end.
 const text::Error* facts_of(lua_State* L, std::string_view message);
 
 /// Additions to an error message.
@@ -26,17 +26,17 @@ struct Remarks {
     std::string during;      ///< "\n  in M at t = 0.5" for an error in an excitation
 };
 
-/// Makes the remarks on the error value at `error`, while its functions are still on the stack; or on the message about
-/// the result of the function at `function` (otherwise 0).
+/// Makes the remarks on the error value at index `error`, while its functions are still on the stack. If `function` is
+/// not 0, the error is about the result of the function at that index.
 using Witness = Remarks (*)(lua_State* L, int error, int function);
 
-/// Sets the function that makes remarks on errors in M. Without one there are none.
+/// Sets the function that makes remarks on errors in M. Without it errors have no remarks.
 void set_witness(lua_State* L, Witness witness);
 
-/// The message handler for calls of M: keeps the error value, and stores the witness's remarks.
+/// The message handler for calls of M. It returns the error value and stores the witness's remarks.
 int witness_error(lua_State* L);
 
-/// The same for the message on the top about a result of the function at the index.
+/// Stores remarks on the message on the top about a result of the function at the index.
 void witness_result(lua_State* L, int function);
 
 /// Adds the argument (t) with which a function (M) was called to the remarks on the error value on the top.
@@ -45,7 +45,8 @@ void remember_argument(lua_State* L, const char* function, const char* argument,
 /// Keeps the remarks when their error value is about to be raised again, possibly through an outer M.
 void keep_remarks(lua_State* L);
 
-/// Forgets the remarks: two inputs of the prompt may fail with the same text, "input:1: ...", in different lines.
+/// Forgets the remarks: because two inputs of the prompt may fail with the same text, "input:1: ...", in different
+/// lines.
 void forget_remarks(lua_State* L);
 
 /// The stored remarks on the error value at the index, or nullptr.

@@ -1,4 +1,4 @@
-// Functions of another language that Lua calls, such as Python's: data that dinal needs without calling them.
+// Functions of another language, such as Python, that Lua calls: data that dinal needs without calling them.
 #pragma once
 
 #include <cstdint>

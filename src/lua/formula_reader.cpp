@@ -20,7 +20,7 @@ namespace {
 
 using model::Op;
 
-/// lopcodes.h of Lua 5.4, all 83 of them.
+/// The opcodes in lopcodes.h of Lua 5.4, all 83.
 enum class Code : std::uint32_t {
     move,
     loadi,
@@ -122,13 +122,13 @@ struct Instruction {
     [[nodiscard]] int jump() const { return static_cast<int>(bits >> 7U) - 16777215; }
 };
 
-/// The reader's knowledge of a register of Lua. A number that is not constant stands in the formula's register of that
-/// number.
+/// What the reader knows about a Lua register. A number that is not constant is in the formula's register with the same
+/// index.
 struct Known {
     enum class Kind : std::uint8_t { unknown, nil, no, yes, object, states, whole, number } kind = Kind::unknown;
     bool constant = true;
-    double value = 0;  ///< of a constant number, as a register has it
-    int object = 0;    ///< in the list of values
+    double value = 0;  ///< bits of a constant number
+    int object = 0;    ///< index in the list of values
 
     [[nodiscard]] bool is_number() const { return kind == Kind::whole || kind == Kind::number; }
     [[nodiscard]] bool is_false() const { return kind == Kind::nil || kind == Kind::no; }
@@ -150,7 +150,7 @@ struct Function {
     std::string dumped;
     Prototype code;
     std::string file;
-    std::vector<bool> is_target;  ///< of a jump: ways may meet there
+    std::vector<bool> is_target;  ///< whether each instruction is the target of a jump, where branches may meet
 
     void note_targets() {
         const auto note = [this](std::size_t at) {
@@ -168,10 +168,10 @@ struct Function {
     }
 };
 
-/// A loop with `for` that is being run through.
+/// A `for` loop that is being unrolled.
 struct Loop {
-    int control;             ///< the first of its four registers
-    std::size_t start, end;  ///< the instruction behind its preparation, and the one that leads back
+    int control;             ///< index of the first of its four registers
+    std::size_t start, end;  ///< instruction after its preparation, and the one that jumps back
     std::size_t round = 0;
 };
 
@@ -179,20 +179,21 @@ struct Frame {
     int closure;
     std::shared_ptr<const Function> function;
     std::size_t at = 0;
-    std::size_t jumps_back = 0;  ///< of other loops
+    std::size_t jumps_back = 0;  ///< number of backward jumps of other loops
     std::vector<Loop> loops = {};
     int base = 0, results = 1;
 };
 
-/// A place in the code that is being followed, and what is known there.
+/// A branch of execution: its position in the code, and what is known there.
 struct Way {
     std::vector<Frame> frames;
     std::vector<Known> registers;
-    int top = 0;         ///< behind the values of an open list
-    int arguments = -1;  ///< those left of a call of math.max that is half done
+    int top = 0;         ///< end of the values of an open list; 0: none
+    int arguments = -1;  ///< number of arguments left of an unfinished call of math.max; -1: none
 
     Known& operator[](int i) { return registers[static_cast<std::size_t>(i)]; }
-    /// Numbers that grow on each way, whichever that is: within a loop round by round, in a call before behind it.
+    /// Numbers that increase along every branch, to order positions: rounds within a loop, and instructions within a
+    /// call before those after it.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> place() const {
         std::vector<std::pair<std::size_t, std::size_t>> numbers;
         for (const Frame& frame : frames) {
@@ -220,7 +221,7 @@ struct Way {
     }
 };
 
-/// A field of a step that is to lead somewhere.
+/// A jump target of a step that is not known yet.
 struct Loose {
     std::size_t step;
     std::uint32_t model::Formula::Step::*field;
@@ -228,15 +229,15 @@ struct Loose {
 struct Waiting {
     Way way;
     std::vector<Loose> loose;
-    bool settled = false;  ///< nothing will be joined with it
+    bool settled = false;  ///< whether no other branch will be merged with it
 };
 
-/// Why a function is not read.
+/// The reason why a function is not read.
 struct Obstacle {
     std::string why;
 };
 
-// Registers of the formula: as many as Lua has, and these, which are put behind them in the end.
+// Registers of the formula: those of Lua, and the following kinds, which are numbered after them at the end.
 constexpr int most_registers = 240, first_state = 0x1000, first_help = 0x2000, first_constant = 0x4000;
 constexpr std::size_t most_steps = 3000, most_versions = 3, most_waiting = 200, deepest_calls = 30;
 constexpr int most_followed = 20000;
@@ -248,11 +249,11 @@ constexpr std::array<Arithmetic, 7> arithmetic_of = {{{Op::add, Op::add_whole},
                                                       {Op::subtract, Op::subtract_whole},
                                                       {Op::multiply, Op::multiply_whole},
                                                       {Op::modulo, Op::modulo_whole},
-                                                      {Op::power, Op::move},  // always floats
+                                                      {Op::power, Op::move},  // the result is always a float
                                                       {Op::divide, Op::move},
                                                       {Op::floor_divide, Op::divide_whole}}};
 
-/// Functions of Lua's libraries; those of math without an operation are worked out in `library`.
+/// Functions of Lua's libraries. Those of math without an operation are translated in library().
 struct Standard {
     const char *module, *name;
     Op op = Op::fail;
@@ -280,7 +281,7 @@ constexpr Standard standard[] = {{"math", "sin", Op::sin},
 
 class Reader {
 public:
-    /// All values from outside come into the table at the index, which is the top.
+    /// Values from outside are stored in the table at index `values`, the top of the stack.
     Reader(lua_State* L, const Arguments& arguments, int values) : L_(L), arguments_(arguments), values_(values) {}
 
     Reading read(int index) {
@@ -307,9 +308,9 @@ public:
     }
 
 private:
-    // ---- what is outside
+    // ---- values from outside
 
-    /// The value on the top of the stack, which is popped, in the list of values.
+    /// Pops the value on the top of the stack and returns its index in the list of values.
     int keep() {
         const void* identity = lua_topointer(L_, -1);
         const auto known = kept_.find(identity);
@@ -323,7 +324,7 @@ private:
         return place;
     }
     int push_kept(int place) { return lua_rawgeti(L_, values_, place); }
-    /// That value as a register has it.
+    /// The value in this place of the list, as the content of a register.
     Known known(int place) {
         Known made{.kind = Known::Kind::object, .object = place};
         switch (push_kept(place)) {
@@ -350,8 +351,8 @@ private:
         const int type = push_kept(holder);
         lua_replace(L_, values_ + 1);
         lua_settop(L_, values_ + 1);
-        // An obstacle below may disappear while the value stays: until the value is known the holder stands for it,
-        // which no look-up returns, so the reading holds for no other run.
+        // If an obstacle follows, the entry keeps the holder as its value. No look-up returns the holder, so the
+        // reading is not reused although the obstacle may have disappeared.
         outside_.push_back({kind, holder, key, holder});
         if (kind != OutsideValue::Kind::variable && type != LUA_TTABLE)
             throw Obstacle{"it indexes a value that is not a table"};
@@ -364,8 +365,8 @@ private:
     }
 
 public:
-    /// The value that the holder at the index has, or the tables that its metatables name; false, and nothing of use,
-    /// where a function decides.
+    /// Pushes the value that the holder at the index has under this key, also through metatables that are tables.
+    /// Returns false if a metamethod would decide.
     static bool push_outside(lua_State* L, int values, int holder, OutsideValue::Kind kind, std::int64_t key) {
         if (kind == OutsideValue::Kind::variable) return lua_getupvalue(L, holder, static_cast<int>(key)) != nullptr;
         if (kind == OutsideValue::Kind::length) {
@@ -439,7 +440,7 @@ private:
         if (is_new) constants_.push_back(value);
         return static_cast<int>(place->second);
     }
-    /// Returns the register that holds a number: that of the constant, or its place.
+    /// Returns the register of a number: that of the constant, or `place`.
     int register_of(const Known& known, int place) { return known.constant ? constant_register(known.value) : place; }
     static void need_number(const Known& known) {
         if (!known.is_number()) throw Obstacle{"it calculates with a value that is not a number"};
@@ -451,7 +452,7 @@ private:
         emit(conversion, first_help + help, place, place);
         return first_help + help;
     }
-    /// Puts the result of the operation into the register; constants are worked out here.
+    /// Stores the result of the operation in the register; operations on constants are evaluated here.
     void calculate(Way& way, Op op, int to, int a, int b, Known::Kind kind) {
         if (a >= first_constant && b >= first_constant) {
             Known made{.kind = kind};
@@ -490,7 +491,7 @@ private:
 
     // ---- conditions
 
-    /// A comparison that is decided here, or the step that decides it later.
+    /// A comparison that is decided while reading, or the step that decides it at run time.
     struct Condition {
         std::optional<bool> decided;
         std::size_t step = 0;
@@ -526,7 +527,7 @@ private:
         if (x.kind != y.kind) return false;
         if (x.kind != Known::Kind::object || x.object == y.object) return true;
         const bool texts = push_kept(x.object) == LUA_TSTRING && push_kept(y.object) == LUA_TSTRING;
-        // Lua keeps only one copy of short texts, but several of a long one.
+        // Lua keeps one copy of a short string, but may have several of a long one.
         const bool same = texts && lua_rawequal(L_, -1, -2) != 0;
         lua_settop(L_, values_ + 1);
         if (!texts) throw Obstacle{"it compares tables"};
@@ -540,7 +541,8 @@ private:
         frame.at += 1 + static_cast<std::size_t>(distance);
     }
     void take(Way& way, bool jumps) { jumps ? jump(way) : static_cast<void>(++way.frames.back().at); }
-    /// Takes the jump that follows if the condition is `wanted`. Returns false when both ways wait.
+    /// Takes the jump that follows if the condition is `wanted`. If it is not decided, both branches wait, and the
+    /// result is false.
     bool go_on(Way& way, const Condition& condition, bool wanted) {
         if (condition.decided) {
             take(way, *condition.decided == wanted);
@@ -559,7 +561,7 @@ private:
         waiting_.push_back({std::move(way), std::move(loose)});
     }
 
-    // ---- ways
+    // ---- branches
 
     void land(const std::vector<Loose>& loose) {
         const bool here = loose.size() == 1 && loose[0].step + 1 == steps_.size() && steps_.back().op == Op::jump;
@@ -568,7 +570,8 @@ private:
     }
     std::vector<Loose> jump_from_here() { return {{emit(Op::jump, 0, 0, 0), &model::Formula::Step::yes}}; }
 
-    /// Those that wait at the place that comes first are made one where they are the same, or too many.
+    /// Continues the earliest waiting branch. Branches at the same position are merged first if they are equal, or too
+    /// many.
     void follow_next() {
         const auto first = std::min_element(waiting_.begin(), waiting_.end(),
                                             [](const Waiting& a, const Waiting& b) { return a.way.is_before(b.way); });
@@ -606,7 +609,7 @@ private:
             }
         }
     }
-    /// Constants that differ between ways come into registers.
+    /// Merges branches by moving constants that differ into registers.
     void generalise(std::vector<Waiting>& here) {
         std::vector<Waiting> general;
         for (const Waiting& one : here) {
@@ -658,7 +661,7 @@ private:
         lua_pop(L_, 1);
         return known;
     }
-    /// Into the function with that number of arguments, which stand from `base` on.
+    /// Enters a Lua function with this number of arguments, which begin at register `base`.
     void enter(Way& way, int closure, int base, int arguments, int results) {
         Frame frame{.closure = closure, .function = function_at(closure), .base = base, .results = results};
         const Prototype& code = frame.function->code;
@@ -689,14 +692,14 @@ private:
             const bool table = i == 3 || (i > 0 && !arguments_.bodies.empty());
             way[before + i] = table ? Known{.kind = Known::Kind::states, .object = i % 3} : number;
         }
-        if (arguments_.of_speed) {  // t, theta and velocity make room for it
+        if (arguments_.of_speed) {  // t, theta and velocity move up to make room for the speed
             used_ = 4;
             for (const int i : {3, 2, 1}) emit(Op::move, i, i - 1, i - 1);
             emit(Op::move, 0, first_state, first_state);
         }
         enter(way, closure, 0, count, 1);
     }
-    /// Puts so many values, from a place on, where the caller of the innermost function wants them.
+    /// Returns from the innermost function with `count` values that begin at register `from`.
     void leave(Way& way, int from, int count) {
         const Frame left = way.frames.back();
         if (way.frames.size() == 1) {
@@ -714,7 +717,7 @@ private:
         way.frames.pop_back();
         deliver(way, function, count, left.results);
     }
-    /// `count` values stand from the place on, `wanted` are wanted; -1: all.
+    /// Adjusts `count` results from register `place` on to the `wanted` number; -1: all.
     void deliver(Way& way, int place, int count, int wanted) {
         const Frame& frame = way.frames.back();
         const int size = frame.base + static_cast<std::uint8_t>(frame.function->code.frame[2]);
@@ -727,7 +730,7 @@ private:
         }
     }
 
-    /// False when the way has come to an end, or waits.
+    /// Translates a call. Returns false if the branch has ended or waits.
     bool call(Way& way, int function, int arguments, int results) {
         const Known called = way[function];
         if (const model::Excitation* excitation = excitation_at(called)) {
@@ -762,7 +765,7 @@ private:
         deliver(way, function, 1, results);
         return true;
     }
-    /// The excitation that is this object, else null.
+    /// The excitation if the object is one, otherwise null.
     const model::Excitation* excitation_at(const Known& known) {
         if (known.kind != Known::Kind::object) return nullptr;
         push_kept(known.object);
@@ -770,7 +773,7 @@ private:
         lua_pop(L_, 1);
         return found;
     }
-    /// Its value at the time that stands behind it, or behind it and itself: e(t), e:value(t).
+    /// Translates e(t) or e:value(t), whose arguments follow the register `function`.
     bool evaluate(Way& way, const model::Excitation& excitation, int function, int arguments, int results) {
         const bool by_name = arguments > 0 && way[function + 1] == way[function];
         const int time = function + (by_name ? 2 : 1);
@@ -785,7 +788,7 @@ private:
         deliver(way, function, 1, results);
         return true;
     }
-    /// " (print)", when the function comes from there.
+    /// " (print)", the name under which the function was looked up, if known.
     static std::string name_of(const Way& way) {
         const Frame& frame = way.frames.back();
         for (std::size_t at = frame.at; at-- > 0;) {
@@ -800,7 +803,7 @@ private:
         }
         return "";
     }
-    /// Returns the library function that the object is, as the libraries were at the start; null for any other.
+    /// Returns the entry of a library function if it is unchanged since the start; null for any other object.
     const Standard* standard_at(int object) {
         const auto [place, is_new] = standards_.try_emplace(object, nullptr);
         for (const Standard& one : standard) {
@@ -878,7 +881,8 @@ private:
         deliver(way, function, 1, results);
         return true;
     }
-    /// The greater or the less of the first two arguments takes their place; false when two ways wait.
+    /// Translates one step of math.max or math.min: the first two arguments are replaced by the greater or the smaller.
+    /// Returns false if both branches wait.
     bool choose(Way& way, bool greatest, int function, int arguments, int results) {
         const int first = function + 1, second = function + 2;
         const Operand x{way[first], first}, y{way[second], second};
@@ -911,7 +915,7 @@ private:
 
     // ---- loops
 
-    /// Prepares the loop, whose three numbers are constants; false when it does not run at all.
+    /// Prepares a loop with constant bounds. Returns false if it has no rounds.
     static bool prepare(Way& way, int a) {
         for (int i = 0; i < 3; ++i) {
             if (!way[a + i].is_number() || !way[a + i].constant) throw Obstacle{"its loop has no constant bounds"};
@@ -961,7 +965,7 @@ private:
         }
     }
 
-    /// Behind a loop its registers hold nothing any more.
+    /// Clears the registers of loops that have ended.
     static void leave_loops(Way& way) {
         Frame& frame = way.frames.back();
         while (!frame.loops.empty() && frame.at > frame.loops.back().end) {
@@ -997,12 +1001,12 @@ private:
         }
     }
 
-    /// An instruction, and the registers that it names.
+    /// An instruction and its operands.
     struct Decoded {
         Way& way;
         const Function& function;
         Instruction i;
-        std::size_t& at;  ///< the next instruction
+        std::size_t& at;  ///< index of the next instruction
         int closure, a, b, c;
 
         [[nodiscard]] Operand in_register(int place) const { return {way[place], place}; }
@@ -1016,7 +1020,7 @@ private:
     Operand constant_of(const Decoded& now, int number) { return {constant(now.function, number), 0}; }
     static Operand immediate(int value) { return {constant_whole(value), 0}; }
 
-    /// Follows one instruction. Returns false when the way has come to an end, or waits.
+    /// Translates one instruction. Returns false if the branch has ended or waits.
     bool step(Way& way) {
         using enum Code;
         const std::shared_ptr<const Function> function = way.frames.back().function;
@@ -1042,7 +1046,7 @@ private:
         }
     }
 
-    // Each of the following functions follows instructions of one kind, and returns false for any other.
+    // Each of the following functions translates instructions of one kind, and returns false for any other.
 
     /// Puts constants into registers, or copies one register.
     bool load(const Decoded& now) {
@@ -1101,7 +1105,7 @@ private:
                 field(way, a, b, constant(now.function, i.c()));
                 return true;
             case self: {
-                // The excitation stands for its method, which is called with itself.
+                // The excitation stands for its method, which receives the excitation again as argument.
                 const Known name = i.k() ? constant(now.function, i.c()) : way[now.c], own = way[b];
                 if (excitation_at(own) == nullptr || !(name == text("value"))) refuse(self);
                 way[a] = way[a + 1] = own;
@@ -1116,8 +1120,8 @@ private:
         }
     }
 
-    /// Calculates with numbers, or negates. An instruction for values that are no numbers follows one with two
-    /// operands, and is skipped.
+    /// Arithmetic and negation. Binary operations are followed by an instruction for values that are not numbers, which
+    /// is skipped.
     bool do_arithmetic(const Decoded& now) {
         using enum Code;
         const auto& [way, i, a, b] = std::tie(now.way, now.i, now.a, now.b);
@@ -1165,7 +1169,7 @@ private:
         }
     }
 
-    /// Jumps, tests of one value, and loops with `for`.
+    /// Jumps, tests of one value, and `for` loops.
     bool branch(const Decoded& now) {
         using enum Code;
         const auto& [way, i, a, b] = std::tie(now.way, now.i, now.a, now.b);
@@ -1207,7 +1211,7 @@ private:
         }
     }
 
-    /// The condition of an instruction that compares two values; none for any other.
+    /// The condition of an instruction that compares two values; empty for any other.
     std::optional<Condition> comparison(const Decoded& now) {
         using enum Code;
         const auto& [i, a, b] = std::tie(now.i, now.a, now.b);
@@ -1250,7 +1254,7 @@ private:
         }
         push_kept(name.object);
         const char* text = lua_tostring(L_, -1);
-        const int table = way[b].object;  // 1: theta, 2: velocity
+        const int table = way[b].object;  // 0: states, 1: theta, 2: velocity
         const std::vector<std::string>& names = table == 0 ? arguments_.states : arguments_.bodies;
         const auto found = std::find(names.begin(), names.end(), text == nullptr ? "" : text);
         lua_pop(L_, 1);
@@ -1294,14 +1298,14 @@ private:
     std::vector<model::Formula::Step> steps_;
     std::vector<double> constants_;
     model::Formula::Excitations excitations_;
-    std::map<int, int> excitation_registers_;  ///< by their places in the list of values
+    std::map<int, int> excitation_registers_;  ///< by index in the list of values
     std::map<std::int64_t, std::size_t> constant_places_;
     int used_ = 0, followed_ = 0;
     bool has_returned_ = false;
     std::pair<std::shared_ptr<const Function>, std::size_t> place_;
 };
 
-/// The same type and the same bits.
+/// Returns whether the two values on the top have the same type and bits.
 bool is_same(lua_State* L) {
     const bool numbers = lua_type(L, -1) == LUA_TNUMBER && lua_type(L, -2) == LUA_TNUMBER;
     if (!numbers) return lua_rawequal(L, -1, -2) != 0;
@@ -1310,7 +1314,7 @@ bool is_same(lua_State* L) {
     return model::to_whole(lua_tonumber(L, -1)) == model::to_whole(lua_tonumber(L, -2));
 }
 
-/// All outside is as it was; the values stand at the index.
+/// Returns whether all outside values are unchanged. `values` is the index of the list of values.
 bool still_holds(lua_State* L, const Reading& reading, int values) {
     const bool same = std::all_of(reading.outside.begin(), reading.outside.end(), [&](const OutsideValue& one) {
         lua_settop(L, values);
@@ -1324,7 +1328,7 @@ bool still_holds(lua_State* L, const Reading& reading, int values) {
 }
 
 using Shared = std::shared_ptr<Reading>;
-const char readings_key = 0;  // in the registry: function -> its reading, as long as the function lives
+const char readings_key = 0;  // registry key: function -> its reading, with weak keys
 const char reading_class_key = 0;
 
 int forget_reading(lua_State* L) {

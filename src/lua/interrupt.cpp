@@ -34,10 +34,10 @@ std::atomic<bool> armed = false;
 std::atomic<lua_State*> running = nullptr;                          // on the program's thread
 thread_local std::atomic<lua_State*>* running_in_worker = nullptr;  // on the thread of a WorkerScope
 thread_local const WorkerWatch* watch_of_worker = nullptr;          // on the thread of a WorkerScope
-std::atomic<long> first_signal_ms = 0;                              // 0: none in this chunk
+std::atomic<long> first_signal_ms = 0;                              // first Ctrl-C in this chunk; 0: none
 std::array<char, LUA_IDSIZE + 20> stopping_place{};
 
-// Stoppable code has stopped within this time; a key held down repeats faster.
+// Stoppable code stops within this time. A key that is held down repeats faster.
 constexpr long patience_ms = 200;
 
 /// The Lua thread that runs on this OS thread. Called in signal handlers, so the variables above must be initialised.
@@ -69,12 +69,12 @@ void interrupt_hook(lua_State* L, lua_Debug*) {
     if (interrupt_requested() && armed) {
         raise_interrupted(L);
     }
-    lua_sethook(L, nullptr, 0, 0);  // left over from a chunk that has ended
+    lua_sethook(L, nullptr, 0, 0);  // a leftover from a chunk that has ended
 }
 
 void set_hook(lua_State* L) {
-    // Count 1, and kept until the chunk ends: a loop around pcall is stopped at its next instruction. Not for calls and
-    // returns: a message handler in C (traceback) must be able to work.
+    // The hook is called at each instruction until the chunk ends, so that a loop around pcall stops. It is not called
+    // at calls and returns, because a message handler in C (traceback) must be able to work.
     lua_sethook(L, interrupt_hook, LUA_MASKCOUNT, 1);
 }
 
@@ -248,7 +248,7 @@ namespace {
 
 using Nanoseconds = std::int64_t;
 constexpr Nanoseconds one_second = 1'000'000'000;
-constexpr Nanoseconds patience = one_second;  // an integration, a sort or a garbage collection may be running
+constexpr Nanoseconds patience = one_second;  // time for an integration, sort or garbage collection to finish
 
 double allowed_time = 0;  // seconds; 0: no limit
 timer_t timer{};
@@ -292,8 +292,7 @@ bool takes_text(int descriptor) {
     _exit(1);
 }
 
-/// Runs on a thread of the timer, repeatedly after the deadline, so it is not restricted to what signal handlers may
-/// do.
+/// Runs on a thread of the timer, repeatedly after the deadline, and so may do more than a signal handler.
 void on_expiry(sigval) {
     if (is_overdue_by(patience)) {
         end_program();
@@ -305,7 +304,7 @@ void on_expiry(sigval) {
 
 /// Starts the timer; 0 stops it.
 void set_timer(Nanoseconds allowed) {
-    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // before the deadline
+    if (allowed > 0) latest = now_by(CLOCK_MONOTONIC) + longest_wait * allowed;  // must be set before the deadline
     deadline = allowed > 0 ? now_by(CLOCK_PROCESS_CPUTIME_ID) + allowed : 0;
     itimerspec times{};
     times.it_value = {allowed / one_second, allowed % one_second};

@@ -24,13 +24,13 @@ namespace dinal::lua {
 
 inline constexpr int longest_wait = 10;
 
-/// Sets the limit for the whole process. Call once, on the thread that runs Lua.
+/// Sets the time limit for the whole process. Call once, on the thread that runs Lua.
 void set_time_limit(double seconds);
 
 /// The limit in seconds; 0: none.
 [[nodiscard]] double time_limit() noexcept;
 
-/// The time runs while it lives. Nested ones have no effect.
+/// The time limit counts while this object lives. Nested objects have no effect.
 class TimeAllowance {
 public:
     TimeAllowance();
@@ -44,7 +44,7 @@ enum class Stop { none, interrupted, time, memory };
 /// Installs the SIGINT handler. A second Ctrl-C, if the chunk has had time to stop but has not, ends the process with
 /// exit code 130.
 void install_interrupt_handler();
-/// Installs only the handlers by which other stop requests reach workers and file reading.
+/// Installs only the handlers through which other stop requests reach workers and file reading.
 void install_stop_handlers();
 
 /// Sets a signal handler that also interrupts system calls.
@@ -52,13 +52,13 @@ void set_handler(int signal, void (*handler)(int));
 
 /// The reason to stop since the last InterruptScope began. Stepping loops call this now and then.
 [[nodiscard]] Stop stop_requested() noexcept;
-/// Returns whether to stop for any reason, including that this worker is given up.
+/// Returns whether to stop for any reason, including that this worker's task is given up.
 [[nodiscard]] bool interrupt_requested() noexcept;
 
 /// Stops the running code, unless it is already being stopped. Call on Lua's thread; allowed in a signal handler.
 void request_stop(Stop reason) noexcept;
 
-/// The same outside of signal handlers; stopped_at() becomes the present position.
+/// Like request_stop(), but not for signal handlers; sets stopped_at() to the present position.
 void stop_here(Stop reason) noexcept;
 
 /// Makes settle_refusal() run before the next Lua instruction on this thread.
@@ -73,9 +73,9 @@ std::string stopped_at();
 /// Returns whether an InterruptScope exists.
 [[nodiscard]] bool chunk_runs() noexcept;
 
-/// While it lives, a stop is raised repeatedly in the code on `L`, so that no pcall can swallow it. Use one for each
-/// chunk, around its outermost lua_pcall; the time limit runs meanwhile. Outside, Ctrl-C only sets the flag. A nested
-/// scope belongs to the outer one, so that a Ctrl-C between two of them is not lost.
+/// While this object lives, a stop is raised repeatedly in the code on `L`, so that no pcall can swallow it. Use one
+/// for each chunk, around its outermost lua_pcall; the time limit runs meanwhile. Outside, Ctrl-C only sets the flag. A
+/// nested scope belongs to the outer one, so that a Ctrl-C between two of them is not lost.
 class InterruptScope {
 public:
     explicit InterruptScope(lua_State* L);
@@ -89,7 +89,8 @@ private:
     TimeAllowance time_;
 };
 
-/// The present task of a worker, for a thread that gives it up when it takes too long; later tasks are not affected.
+/// The present task of a worker, so that another thread can give it up when it takes too long; later tasks are not
+/// affected.
 struct WorkerWatch {
     std::atomic<std::uint64_t> task = 0, given_up = 0;  ///< task numbers, from 1
     std::atomic<double> since = 0;                      ///< start of the task, seconds of the watcher's clock
@@ -101,8 +102,8 @@ struct WorkerWatch {
 /// The watch of this thread, or nullptr.
 [[nodiscard]] const WorkerWatch* watch_here() noexcept;
 
-/// A thread that runs Lua in its own state. While it lives, a stop requested here or by a nudge reaches the code on
-/// `L`, and no progress is shown. The InterruptScope is that of the program.
+/// Marks a thread that runs Lua in its own state. While this object lives, a stop requested here or by a nudge reaches
+/// the code on `L`, and no progress is shown. The InterruptScope is that of the program.
 class WorkerScope {
 public:
     explicit WorkerScope(lua_State* L, const WorkerWatch* watch = nullptr);
@@ -120,7 +121,7 @@ private:
 /// Makes that thread check for a stop request. It must not have been joined.
 void nudge(pthread_t worker) noexcept;
 
-/// While it lives, new threads receive no signal except a nudge: Ctrl-C is for the program's own thread.
+/// While this object lives, new threads receive no signal except a nudge: Ctrl-C is for the program's own thread.
 class SignalsForOthers {
 public:
     SignalsForOthers();
@@ -135,7 +136,7 @@ private:
 /// Replaces coroutine.resume, wrap and close by functions that also record the running thread.
 void open_coroutines(lua_State* L);
 
-/// While it lives, files are read and written completely even if the script was stopped.
+/// While this object lives, files are read and written completely even if the script was stopped.
 class InSpiteOfStop {
 public:
     InSpiteOfStop();
@@ -144,7 +145,8 @@ public:
     InSpiteOfStop& operator=(const InSpiteOfStop&) = delete;
 };
 
-/// Records the running Lua thread for the handler of Ctrl-C: while it lives, `callee`, called from `caller`.
+/// Records `callee`, called from `caller`, as the running Lua thread for the handler of Ctrl-C, while this object
+/// lives.
 class RunningThread {
 public:
     RunningThread(lua_State* caller, lua_State* callee);

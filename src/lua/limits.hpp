@@ -27,7 +27,7 @@ std::string limit_sentence(Stop reason, const std::string& place);
 /// The sentence if a limit stopped the last chunk, otherwise empty.
 std::string reached_limit();
 
-// Output after a limit was reached, which nobody may be reading:
+// Output after a limit was reached, when possibly nobody reads it:
 
 /// Writes to standard error without blocking, as far as it is read.
 void write_error_in_time(std::string_view text);

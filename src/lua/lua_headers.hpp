@@ -1,5 +1,5 @@
-// Lua's own headers rather than <lua.hpp>, which adds extern "C": luaconf.h itself knows how the C++ build of the
-// library names its functions, as in C on Debian 12 and as in C++ on Debian 13.
+// Lua's own headers instead of <lua.hpp>, which adds extern "C". luaconf.h itself declares the linkage of the library's
+// C++ build, which is C on Debian 12 and C++ on Debian 13.
 #pragma once
 
 #include <lua.h>

@@ -30,10 +30,10 @@ struct SyntaxMessage {
     std::string_view opened = {};    ///< "{", the bracket that is not closed, if known
     int opened_line = 0;
 };
-/// None for other messages.
+/// Empty for other messages.
 std::optional<SyntaxMessage> syntax_message(std::string_view words);
 
-/// Returns whether it is about a coroutine.yield across a C++ function.
+/// Returns whether the message is about a coroutine.yield across a C++ function.
 bool is_about_yield(std::string_view message);
 
 /// Returns whether the chunk ended too early, so that more lines may complete it or a string in it.

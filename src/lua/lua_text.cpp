@@ -26,7 +26,7 @@ bool is_name(std::string_view text) {
 
 std::vector<std::string> free_names(std::string_view source) {
     std::vector<std::string> names;
-    bool field = false;  // after . or : a name is a field
+    bool field = false;  // after . or : a name is that of a field
     for (const Token& token : tokens(source)) {
         if (token.kind == TokenKind::comment) {
             continue;

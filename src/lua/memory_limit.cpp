@@ -67,7 +67,7 @@ bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
     return refused_before != 0 && (refused_before != size || !fits);
 }
 
-thread_local std::size_t refused = 0;  // size of Lua's last refused request; 0: satisfied since
+thread_local std::size_t refused = 0;  // size of Lua's last refused request; 0: satisfied meanwhile
 
 void* allocate(void*, void* block, std::size_t, std::size_t size) {
     const Bytes before = size_of(block);
@@ -104,7 +104,7 @@ void* counted(std::size_t size, void* block) {
     return result;
 }
 
-// AddressSanitizer itself needs far more.
+// AddressSanitizer itself needs far more memory.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define DINAL_SANITIZED
@@ -169,7 +169,7 @@ void collect_when_tight(lua_State* L) {
     if (!limited()) {
         return;
     }
-    thread_local Bytes after_last = 0;  // memory still in use after the last collection: need not be collected again
+    thread_local Bytes after_last = 0;  // memory in use after the last collection, which need not be collected again
     const Bytes all = limit.load(std::memory_order_relaxed);
     after_last = std::min(after_last, now_taken());
     if (now_taken() > all / 2 && now_taken() - after_last > all / 8) {
@@ -197,7 +197,7 @@ MemoryCharge::~MemoryCharge() {
 // step ages the objects in use; after two of them they are old, and old garbage is only collected once Lua's own memory
 // has doubled.
 void note_external_memory(lua_State* L, std::size_t bytes) {
-    constexpr std::size_t much = std::size_t{256} << 20U;  // filling it takes longer than a collection
+    constexpr std::size_t much = std::size_t{256} << 20U;  // allocating so much takes longer than a collection
     thread_local std::size_t since_collection = 0;
     since_collection += bytes;
     if (since_collection > much && lua_gc(L, LUA_GCISRUNNING) != 0) {
@@ -233,7 +233,7 @@ void counted_free(void* block) {
     }
     void* block = plain_malloc(std::max<std::size_t>(size, 1));
     if (block == nullptr) {
-        if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the operating system's backstop
+        if (limited) dinal::lua::stop_here(dinal::lua::Stop::memory);  // the backstop of the operating system
         throw std::bad_alloc();
     }
     if (limited) {

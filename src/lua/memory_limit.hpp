@@ -27,7 +27,7 @@ void settle_refusal() noexcept;
 /// Collects garbage if less than `bytes` are left: objects that are small for Lua may own much memory.
 void make_room(lua_State* L, std::size_t bytes);
 
-/// Collects garbage if much of the limit is used. Every bound function begins with it.
+/// Collects garbage if much of the limit is used. Every bound function calls this first.
 void collect_when_tight(lua_State* L);
 
 /// Counts memory not allocated with `new`, such as an Eigen matrix, during its lifetime.
@@ -46,7 +46,7 @@ private:
 };
 
 /// Reports an object that owns this much memory outside of Lua. Collects garbage when the sum is large: otherwise a
-/// loop over long vectors would fill the memory with dead ones, each of 40 bytes for Lua.
+/// loop could fill the memory with dead long vectors, which Lua counts as 40 bytes each.
 void note_external_memory(lua_State* L, std::size_t bytes);
 
 }  // namespace dinal::lua

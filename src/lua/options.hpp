@@ -32,11 +32,11 @@ public:
     /// The option as declared in its row, which must not be of the kind `other`.
     [[nodiscard]] text::OptionValue value(const text::Option& option) const;
 
-    /// For the kind `other`: a number in the range of its row; or the finite numbers of a table or vector, empty if
-    /// absent.
+    /// For an option of the kind `other`: a number in the range of its row, or the finite numbers of a table or vector
+    /// (empty if absent).
     [[nodiscard]] double number(std::string_view name) const;
     [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
-    /// An object of one of our classes, kept alive by the option table; nullptr if absent and optional.
+    /// The object of one of dinal's classes, kept alive by the option table; nullptr if absent and optional.
     template <class T>
     [[nodiscard]] const T* object(std::string_view name) const {
         push(name);
@@ -48,14 +48,14 @@ public:
         return found;
     }
 
-    /// The beginning of all error sentences.
+    /// The name of the call, with which all error sentences begin.
     [[nodiscard]] const char* call() const { return call_.name; }
     /// The row of an existing option.
     [[nodiscard]] const text::Option& row(std::string_view name) const;
 
     /// Raises the error with the call in front: "CALL: SENTENCE".
     [[noreturn]] void fail(text::Error error) const;
-    /// The same for an error in that option.
+    /// Raises an error about that option.
     [[noreturn]] void fail(std::string_view option, std::string sentence) const;
     /// Returns the value, or raises its error.
     template <class T>

@@ -39,7 +39,7 @@ private:
         const std::string_view one = take(1);
         return one.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(one.front());
     }
-    /// Seven bits a byte, the highest first; the last byte is marked.
+    /// Reads a number of seven bits per byte, the highest first; the last byte is marked.
     std::size_t size() {
         std::size_t value = 0;
         while (!broken_) {

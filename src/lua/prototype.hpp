@@ -12,7 +12,7 @@
 
 namespace dinal::lua {
 
-/// Its views refer to the dumped text.
+/// A parsed function. Its views refer to the dumped text.
 struct Prototype {
     struct Constant {
         std::uint8_t type;        ///< Lua's type tag in a dump

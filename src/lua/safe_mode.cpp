@@ -49,7 +49,7 @@ const std::initializer_list<Library> libraries = {
 };
 
 std::atomic<bool> is_safe = false;
-// Atomic for the same reason as in coroutines.cpp.
+// Atomic for the reason given in coroutines.cpp.
 std::atomic<lua_CFunction> original_load = nullptr;
 std::atomic<lua_CFunction> original_setmetatable = nullptr;
 std::atomic<lua_CFunction> original_xpcall = nullptr;
@@ -80,7 +80,7 @@ int set_metatable(lua_State* L) {
     return original_setmetatable.load()(L);
 }
 
-/// The handler of xpcall, the upvalue. While code is being stopped, Lua calls it with hooks switched off.
+/// Calls the handler of xpcall, the upvalue. While code is being stopped, Lua calls it with hooks switched off.
 int handle(lua_State* L) {
     if (interrupt_requested()) {
         return 1;
@@ -231,7 +231,7 @@ void push_io(lua_State* L) {
 
 // ---- assembly
 
-/// Replaces the function `name` in the table on the top by ours; returns Lua's own.
+/// Replaces the function `name` in the table on the top by dinal's; returns Lua's own.
 lua_CFunction replace(lua_State* L, const char* name, lua_CFunction ours) {
     lua_getfield(L, -1, name);
     const lua_CFunction original = lua_tocfunction(L, -1);
@@ -283,7 +283,7 @@ void replace_globals(lua_State* L) {
 }  // namespace
 
 void open_safe_libraries(lua_State* L) {
-    // Once: a nested sweep opens states while other threads already read files.
+    // Only once, because a nested sweep opens states while other threads already read files.
     if (!is_safe.exchange(true)) files::confine_files();
     replace_globals(L);
     lua_pushglobaltable(L);

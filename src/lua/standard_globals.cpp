@@ -11,7 +11,7 @@
 namespace dinal::lua {
 namespace {
 
-const char dinal_key = 0;     // in the registry, out of reach of a user's `dinal = nil`
+const char dinal_key = 0;     // in the registry, where `dinal = nil` has no effect
 const char standard_key = 0;  // registry key of the initial copy of _G
 const char fields_key = 0;    // in a table of libraries: a copy of each one's initial fields
 
@@ -149,7 +149,7 @@ std::vector<std::string> users_globals(lua_State* L) {
         }
     }
     lua_settop(L, top);
-    // Made by the program after the others were recorded.
+    // The program sets these after the others were recorded.
     std::erase_if(names, [](std::string_view name) { return name == "dinal" || name == "arg"; });
     std::sort(names.begin(), names.end());
     return names;

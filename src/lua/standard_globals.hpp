@@ -24,7 +24,7 @@ void copy_fields(lua_State* L);
 /// Records the standard globals. Call when all globals of Lua and dinal exist.
 void note_standard_globals(lua_State* L);
 
-/// Pushes a table of them: name -> value.
+/// Pushes a table of the standard globals: name -> value.
 void push_standard_globals(lua_State* L);
 
 /// Pushes a table of the libraries' initial fields: library -> copy of its fields.
@@ -33,7 +33,7 @@ void push_standard_fields(lua_State* L);
 /// Returns whether a standard global has been replaced; with `field`, a field of a standard library, such as math.pi.
 bool is_overwritten(lua_State* L, std::string_view name, std::string_view field = {});
 
-/// Returns whether the table `dinal` has it, too.
+/// Returns whether the table `dinal` has this global, too.
 bool is_of_dinal(lua_State* L, std::string_view name);
 
 /// The names of globals that are not standard or have been replaced; sorted.

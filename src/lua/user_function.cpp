@@ -64,7 +64,7 @@ std::uint64_t counters_of_thread() {
     return (threads++ << 40U) + 1;
 }
 
-// Counts possible executions of Lua code on this thread: while it is constant, no variable has changed.
+// Increases whenever Lua code may have run on this thread: while it is constant, no variable has changed.
 thread_local std::uint64_t world = counters_of_thread();
 thread_local std::uint64_t calls = world;
 
@@ -102,7 +102,7 @@ bool wants_state(lua_State* L, int index) {
     return wants;
 }
 
-/// "FILE:LINE: " of the definition of the function on the top (popped); for a C function of its caller.
+/// "FILE:LINE: " of the definition of the function on the top (popped); for a C function that of its caller.
 std::string definition(lua_State* L) {
     if (lua_type(L, -1) != LUA_TFUNCTION) {
         luaL_getmetafield(L, -1, "__call");
@@ -241,7 +241,7 @@ bool CallState::read_states(std::span<double> states) const {
     return read_table(state_table_, names_, states);
 }
 
-/// For several bodies, whose angles and velocities a user may assign.
+/// Reads back angles, velocities and states; with several bodies the user may have assigned angles and velocities.
 bool CallState::read_motion(std::span<double> states) const {
     const std::size_t bodies = bodies_.size();
     if (bodies == 0) return read_states(states);
@@ -283,7 +283,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     const bool numbers = lua_type(L, -2) == LUA_TNUMBER && lua_type(L, -1) == LUA_TNUMBER;
     const model::State next =
         nothing ? state : model::State{.theta = lua_tonumber(L, -2), .velocity = lua_tonumber(L, -1)};
-    const bool of_bodies = call->has_bodies(states);  // angles and velocities are fields
+    const bool of_bodies = call->has_bodies(states);  // whether angles and velocities are fields of the tables
     const bool good = nothing || (numbers && !of_bodies && std::isfinite(next.theta) && std::isfinite(next.velocity));
     std::string wrong;
     if (!good) {
@@ -298,7 +298,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
         return true;
     }
     if (good) {
-        wrong = fmt::format("{} left a state that is not a finite number at t = {:.14g}", name_, t);
+        wrong = fmt::format("{} gave a state a value that is not a finite number at t = {:.14g}", name_, t);
     }
     push(L);
     const std::string message = definition(L) + wrong;
@@ -400,7 +400,7 @@ LuaFunction::LuaFunction(lua_State* L, int index, FunctionRole role)
     reference_ = luaL_ref(L, LUA_REGISTRYINDEX);
 }
 
-// Valid also while lua_close runs finalizers: the registry goes last.
+// Works also while lua_close runs finalizers, because the registry is destroyed last.
 LuaFunction::~LuaFunction() {
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
     luaL_unref(main_, LUA_REGISTRYINDEX, start_);
@@ -436,7 +436,7 @@ bool LuaFunction::is_allowed(double result) const {
     return std::isfinite(result) && (role_.may_be_negative || result >= 0);
 }
 
-/// The arguments of a call in a run.
+/// The arguments with which the function is called in a run.
 Arguments LuaFunction::arguments_in(const CallState& call) const {
     Arguments given{.count = feedback_ ? call.names_.empty() ? 3 : 4 : 1,
                     .of_speed = role_.of_speed,
@@ -450,8 +450,8 @@ bool LuaFunction::fits(std::span<const double> states) const {
     return count == 0 || states.size() == count;
 }
 
-/// The formula if all variables that it treats as constant are unchanged; null if Lua must be called, also if a hook is
-/// set.
+/// The formula if all variables that it treats as constant are unchanged. Null if Lua must be called, such as while a
+/// hook is set.
 model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
     if (lua_gethook(call.L_) != nullptr || start_ != LUA_NOREF) return nullptr;
     const bool is_read = formula() != nullptr;
@@ -483,7 +483,7 @@ void LuaFunction::look_again(const CallState& call) {
     }
 }
 
-/// Compares the first values, and occasionally later ones, with Lua's.
+/// Compares the formula with Lua for the first values, and occasionally for later ones.
 bool LuaFunction::agrees(double read, CallState& call, double t, const model::State& state,
                          std::span<const double> states) {
     constexpr std::uint64_t first = 3, between = 1024;
@@ -522,7 +522,7 @@ double LuaFunction::ask(CallState& call, double t, const model::State& state, st
     lua_pushnumber(L, t);
     if (feedback_) arguments += call.push_motion(state, states);
     if (const auto* memory = dynamic_cast<const LuaMemory*>(memory_.get())) {
-        lua_settop(L, handler + 5);  // without states this is nil
+        lua_settop(L, handler + 5);  // without states the fourth argument is nil
         memory->push(L);
         arguments = 5;
     }
@@ -567,7 +567,7 @@ void LuaFunction::decide(model::terms::Piece& piece, double t, const model::Stat
     reading_->formula->decide(piece, t, state, states.first(reading_->arguments.state_count()), again);
 }
 
-/// Calls the function itself if the formula has no value beyond its piece.
+/// Calls the Lua function if the formula has no value beyond its piece.
 double LuaFunction::value_on(const model::terms::Piece& piece, double t, const model::State& state,
                              std::span<const double> states, std::vector<double>* margins) {
     double M = failure;
@@ -580,14 +580,14 @@ double LuaFunction::value_on(const model::terms::Piece& piece, double t, const m
     }
     if (margins != nullptr) margins->resize(piece.conditions.size(), model::never);
     if (!is_law()) return std::isfinite(M) ? M : value_with(t, state, states);
-    // Below speed 0 only the formula can continue. Above, a piece may be negative beyond its end.
+    // Below speed 0 only the formula can continue the law. Above, a piece may be negative beyond its end.
     const double speed = role_.of_speed ? states.front() : t;
     if (speed < 0 || is_allowed(M)) return M;
     const double own = value_with(t, state, states);
     return std::isfinite(M) && std::isfinite(own) ? M : own;
 }
 
-// Not after Ctrl-C, which stops everything.
+// False after Ctrl-C, which stops everything.
 bool LuaFunction::may_go_on() {
     if (current == nullptr || interrupt_requested()) {
         return false;
@@ -610,7 +610,7 @@ struct Block {
 };
 }  // namespace
 
-/// Receives the Block; returns nothing, or the first invalid result.
+/// Fills the Block that it receives; returns nothing, or the first invalid result.
 int LuaFunction::fill_protected(lua_State* L) {
     auto& block = *static_cast<Block*>(lua_touserdata(L, 1));
     block.function->push(L);

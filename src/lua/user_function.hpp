@@ -13,25 +13,26 @@
 
 namespace dinal::lua {
 
-/// While it lives, user functions run on `L`, the state of the present call, often a coroutine. Create one in every
-/// binding that may evaluate an excitation (simulate, e:value, run:at). They nest.
+/// While this object lives, user functions run on `L`, the state of the present call, often a coroutine. Create one in
+/// every binding that may evaluate an excitation (simulate, e:value, run:at). They nest.
 class CallState {
 public:
-    /// Raises an error if they nest too deep: each may be an integration on the C++ stack, which is smaller than Lua
-    /// assumes.
+    /// Raises an error if calls nest too deep, because each may be an integration on the C++ stack, which is smaller
+    /// than Lua assumes.
     explicit CallState(lua_State* L);
     ~CallState();
     CallState(const CallState&) = delete;
     CallState& operator=(const CallState&) = delete;
 
-    /// Returns whether a user function has failed during this call. From then on all return NaN, until may_go_on().
+    /// Returns whether a user function has failed during this call. From then on all functions return NaN, until
+    /// may_go_on().
     [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
     /// Makes functions receive their states in a table with these names, as fourth argument.
     void name_states(const std::vector<std::string>& names);
-    /// Makes functions receive theta and velocity as tables with these names, from the first of their states.
+    /// Makes functions receive theta and velocity as tables with these names, filled from the first states.
     void name_bodies(const std::vector<std::string>& names);
 
-    /// Sets the time span of interest, if known: conditions that change far more often are noise.
+    /// Sets the time span of interest, if known; conditions that change very often within it count as noise.
     void set_span(double span) { span_ = span; }
 
     /// Raises the user function's error unchanged, or an error about its result. Requires failed().
@@ -70,7 +71,7 @@ private:
     int theta_table_ = LUA_NOREF, velocity_table_ = LUA_NOREF;
     std::vector<std::string> body_names_;
     std::vector<int> bodies_;
-    bool failed_ = false;         // and may_go_on() was not called
+    bool failed_ = false;         // whether a function failed since may_go_on()
     bool failed_before_ = false;  // an earlier failure, whose error is kept
 };
 
@@ -113,7 +114,7 @@ public:
     std::size_t fill(std::span<const double> times, std::span<double> out) override;
     model::Formula* read() override;
     double next_break(double t) override { return next_break(t, &model::Formula::next_break); }
-    /// The same without the breaks of excitations that it evaluates.
+    /// Like next_break(), but without the breaks of excitations that the function evaluates.
     [[nodiscard]] double next_condition(double t) { return next_break(t, &model::Formula::next_condition); }
     bool has_pieces() override;
     void decide(model::terms::Piece& piece, double t, const model::State& state, std::span<const double> states,
@@ -134,11 +135,11 @@ public:
     /// `...`.
     [[nodiscard]] bool feedback() const { return feedback_; }
     [[nodiscard]] const FunctionRole& role() const { return role_; }
-    /// Reads it as a formula, unless done in this call; returns why that fails, empty if it succeeds.
+    /// Reads the function as a formula, unless done in this call. Returns why that fails; empty if it succeeds.
     std::string obstacle();
     /// The result of the last obstacle().
     [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
-    /// Its formula if it has been read, otherwise null.
+    /// The formula if it has been read, otherwise null.
     [[nodiscard]] model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
@@ -146,16 +147,16 @@ public:
 private:
     static int fill_protected(lua_State* L);
     double next_break(double t, double (model::Formula::*next)(double));
-    /// The formula if reading it pays for this many values (`many` for breaks), otherwise null.
+    /// The formula if reading it is worthwhile for this many values (`many` for breaks), otherwise null.
     model::Formula* formula(const CallState& call, std::size_t values);
     static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
     [[nodiscard]] Arguments arguments_in(const CallState& call) const;
-    /// Returns whether the states are those of its formula.
+    /// Returns whether the formula expects these states.
     [[nodiscard]] bool fits(std::span<const double> states) const;
-    /// Returns whether it is a friction law: smooth between its conditions, and never called with negative speeds in
-    /// Lua.
+    /// Returns whether the function is a friction law: smooth between its conditions, and never called with negative
+    /// speeds in Lua.
     [[nodiscard]] bool is_law() const { return !role_.may_be_negative; }
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
     std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
@@ -170,14 +171,14 @@ private:
     FunctionRole role_;
     bool feedback_;
 
-    // The formula and whether it is still valid. Reading pays only after some values, so the first ones are evaluated
-    // by Lua, and all of them if other functions run in between.
+    // The formula and data on its validity. Reading is worthwhile only after some values, so Lua evaluates the first
+    // ones, and all of them if other functions run in between.
     std::shared_ptr<Reading> reading_ = std::make_shared<Reading>();
     std::uint64_t seen_ = 0;       // `world` at the last comparison with the assumed constants
     std::uint64_t tried_in_ = 0;   // the call in which it was read last
     std::uint64_t values_ = 0;     // values computed by the formula since then
     std::uint64_t patience_ = 12;  // values to be evaluated by Lua before the next reading
-    std::uint64_t pause_ = 4;      // last pause; grows while few values come between
+    std::uint64_t pause_ = 4;      // last pause between readings; it grows while few values come between them
 };
 
 /// A user's action at an event: a Lua function of t, theta, velocity, states. Returns theta, velocity, or nothing to

@@ -27,8 +27,8 @@ struct Callable {
 /// A table of numbers by name; Python keeps their order.
 using NamedNumbers = std::vector<std::pair<const char*, double>>;
 
-/// Gives the table on the top a metatable that stores the order of its names, as for a row of data; tables of the same
-/// names share it.
+/// Gives the table on the top a metatable that stores the order of its names, such as those of a row of data. Tables
+/// with equal names share it.
 void note_order(lua_State* L, const NamedNumbers& numbers);
 
 /// Pushes a number, a flag, a text, a list of such, a table of such by name, or an object of a class; nil for an empty
@@ -80,7 +80,7 @@ void set_value(lua_State* L, const char* name, const Value& value) {
     lua_setfield(L, -2, name);
 }
 
-/// The string at `index`, or the strings of a list; none if there is anything else.
+/// The string at `index`, or the strings of a list; none for anything else.
 inline std::optional<std::vector<std::string>> strings_at(lua_State* L, int index) {
     index = lua_absindex(L, index);
     std::vector<std::string> all;
@@ -231,7 +231,7 @@ inline constexpr Binding a_typed_function = a_function<detail::called<function>>
 /// Binds a field: a member of the C++ object, or a function of it, or of the Lua state and it.
 template <class Object, auto get>
 inline constexpr Binding a_value = a_field<detail::read_value<Object, get>>;
-/// The same, computed on first use and kept with the object, so that reading it in a loop is cheap.
+/// A field that is computed on first use and kept with the object, so that reading it in a loop is cheap.
 template <class Object, auto get>
 inline constexpr Binding a_kept_value = a_field<detail::read_kept<Object, get>>;
 /// Binds a method without arguments.

@@ -30,7 +30,8 @@ std::string key_beside_list(lua_State* L, int index) {
         const bool listed = lua_isinteger(L, -2) != 0 && lua_tointeger(L, -2) >= 1 && lua_tointeger(L, -2) <= n;
         const bool named = lua_type(L, -2) == LUA_TSTRING && is_name(text_at(L, -2));
         const std::string own = listed ? "" : (named ? std::string(text_at(L, -2)) : "[" + describe(L, -2) + "]");
-        if (!listed && (key.empty() || own < key)) key = own;  // the alphabetically first, as tables are unordered
+        // the alphabetically first key, because tables are unordered
+        if (!listed && (key.empty() || own < key)) key = own;
         lua_pop(L, 1);
     }
     return key;

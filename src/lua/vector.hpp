@@ -50,7 +50,7 @@ std::vector<double> numbers_at(lua_State* L, int index, std::string_view call, s
 
 // Numbers with gaps: nan marks a missing measurement.
 
-/// The same, but nan is accepted; infinity is not.
+/// Like numbers_at(), but accepts nan; not infinity.
 std::vector<double> numbers_with_gaps_at(lua_State* L, int index, std::string_view call, std::string_view option);
 
 }  // namespace dinal::lua

@@ -7,13 +7,13 @@ namespace {
 
 constexpr double unit = std::numeric_limits<double>::epsilon();
 
-/// An end that overflows becomes the greatest double, so that 1/x stays bounded.
+/// An infinite bound becomes the greatest double, so that 1/x stays bounded.
 Interval checked(double lo, double hi) {
     constexpr double greatest = std::numeric_limits<double>::max();
     return lo <= hi ? Interval{std::min(lo, greatest), std::max(hi, -greatest)} : anything;
 }
 
-/// Widens by a few roundings, as functions of the C library are not quite monotonic; they do keep the sign.
+/// Widens by a few roundings, as functions of the C library are not quite monotonic; the sign is kept.
 Interval wider(Interval a) {
     constexpr double part = 1e-15;
     const Interval known = checked(a.lo, a.hi);
@@ -78,7 +78,7 @@ Interval tangent(const Interval& a) {
     return a.hi - a.lo < half_turn && (below.lo > 0 || below.hi < 0) ? wider(ends(Op::tan, a)) : anything;
 }
 
-/// Operations on whole numbers that differ over the interval. These come from steps, so crude bounds are enough.
+/// Operations on whole numbers that vary over the interval. They result from floor or ceil, so crude bounds are enough.
 Interval of_whole(Op op, const Interval& a, const Interval& b) {
     constexpr double exact = 0x1p53;
     Interval r = anything;
@@ -108,7 +108,7 @@ Interval of_whole(Op op, const Interval& a, const Interval& b) {
     return std::max(std::fabs(r.lo), std::fabs(r.hi)) < exact ? r : anything;
 }
 
-/// Operations that are smooth on pieces only.
+/// Operations that are smooth only between folds.
 Interval fold(Op op, const Interval& a, const Interval& b) {
     const double size = std::max(std::fabs(b.lo), std::fabs(b.hi));
     const bool known = std::isfinite(a.lo) && std::isfinite(a.hi) && (b.lo > 0 || b.hi < 0);
@@ -305,7 +305,7 @@ void Walk::begin(const Formula& formula, const terms::Piece* piece, bool ranges)
 }
 
 Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
-    constexpr double worth = 1e-12;
+    constexpr double least_gain = 1e-12;
     const double c = at(op, a.disc.c, b.disc.c);
     Slot result{image(op, a.disc, b.disc, c), {}, 0, false};
     if (!ranges_) return result;
@@ -322,7 +322,7 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
     const double way = std::max(result.range.hi - c, c - result.range.lo);
     if (std::isnan(way)) {
         result.disc.r = 0, result.apart = never;
-    } else if (!(result.disc.r * worth + result.apart <= way)) {
+    } else if (!(result.disc.r * least_gain + result.apart <= way)) {
         result.disc.r = 0, result.apart = way;
     }
     return result;

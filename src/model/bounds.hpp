@@ -46,7 +46,8 @@ inline double outward(double r, double c) {
     return more;
 }
 
-/// Encloses the results of an operation whose result at the centres is c; not finite if it may not be analytic.
+/// Encloses the results of an operation whose result at the centres is c; not finite if the operation may not be
+/// analytic there.
 Disc image(Op op, const Disc& a, const Disc& b, double c);
 /// The radius of the values of an excitation at these times, continued from the piece at their centre.
 double radius(const Excitation& excitation, const Disc& times);
@@ -70,7 +71,7 @@ public:
     /// Runs once; the arguments are overwritten. With `condition`, a step whose decision is held, returns the compared
     /// difference, or the folded argument in periods.
     Result run(std::optional<std::size_t> condition = {});
-    /// The greatest ratio of radius to centre among the deciders of held conditions.
+    /// The greatest ratio of radius to centre among the operands that determine held decisions.
     [[nodiscard]] double greatest_relative_radius() const { return greatest_relative_radius_; }
 
 private:

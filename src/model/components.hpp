@@ -19,11 +19,11 @@ struct Component {
     double from = -never, to = never;
 };
 
-/// The time from which it is constant for ever; `never` if unknown.
+/// The time from which the component is constant for ever; `never` if unknown.
 double constant_from(const Component& component);
-/// The first time after t at which it or a derivative of it jumps; `never` if there is none.
+/// The first time after t at which the component or a derivative of it jumps; `never` if there is none.
 double next_break(const Component& component, double t);
-/// Its finest detail within the window; empty (from >= to) if there is none.
+/// The finest detail of the component within its window; empty (from >= to) if there is none.
 terms::Detail detail_of(const Component& component);
 
 /// An immutable list. Copies cost nothing; joining two costs the length of the shorter one, amortised over a sum that

@@ -5,7 +5,7 @@
 
 namespace dinal::model {
 
-/// M must depend on its arguments only; this one has a memory or uses random numbers.
+/// M must depend on its arguments only; this function has a memory or uses random numbers.
 struct Contradiction {
     std::string who;       ///< the function's name for the user: "M"
     const char* argument;  ///< the name of the argument `at`: "t"
@@ -15,7 +15,7 @@ struct Contradiction {
 
 /// "M depends on more than its arguments: at t = 3.25 it returned 0.5 and, evaluated again, 0.7"
 std::string sentence(const Contradiction& found);
-/// The same, followed by the remedy.
+/// sentence(found), followed by the remedy.
 std::string sentence_with_cure(const Contradiction& found);
 
 }  // namespace dinal::model

@@ -19,19 +19,20 @@ class Controller : public terms::UserFunction {
 public:
     std::shared_ptr<terms::UserFunction> function;  ///< function of t, theta, velocity, states; null if not needed
 
-    /// No value exists outside of a run.
+    /// The value is NaN, because it exists only within a run.
     double value(double /*t*/, const State& /*state*/) final { return std::numeric_limits<double>::quiet_NaN(); }
     void forget_failure() final {
         if (function != nullptr) function->forget_failure();
     }
 };
 
-/// Evaluated once at each instant at + n every, in order. The value acts after `delay` and is held until the next one.
+/// The function is evaluated once at each instant at + n every, in order. The value acts after `delay` and is held
+/// until the next one.
 struct SampledController final : Controller {
     double every = 0, delay = 0;
     double at = 0;
-    bool carried = false;                             ///< whether it is a copy in a worker of a sweep
-    mutable std::optional<std::uint64_t> first = {};  ///< its memory before the first run, if runs change it
+    bool carried = false;                             ///< whether this is a copy in a worker of a sweep
+    mutable std::optional<std::uint64_t> first = {};  ///< the function's memory before any run, if runs change it
     mutable const void* latest = nullptr;             ///< the run that used it last
 };
 

@@ -34,7 +34,7 @@ public:
 
 enum class Crossing { up, down, both };
 
-/// Located where `when` passes zero.
+/// An event located where `when` passes zero.
 struct WantedEvent {
     std::string name;
     std::shared_ptr<terms::UserFunction> when;

@@ -54,7 +54,7 @@ constexpr std::string_view name(EventKind kind) {
     return "";
 }
 
-/// Returns whether the mass stands after the event.
+/// Returns whether the mass is at rest after the event.
 constexpr bool is_stop(EventKind kind) {
     return kind == EventKind::stick || kind == EventKind::rest;
 }

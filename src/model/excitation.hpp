@@ -1,4 +1,4 @@
-// M(t): a sum of terms, native or scripted. Each term knows its value, its breaks, and whole blocks of values.
+// M(t): a sum of terms, native or scripted. Each term computes its value, its breaks, and whole blocks of values.
 //
 // Terms are continuous from the right: at a break, value(t) is already the new level.
 #pragma once
@@ -28,8 +28,8 @@ struct Spread {
     std::size_t first = 0;            ///< index of the first requested time in `places`
     double middle = 0, rest = 0;      ///< time of place 0 and its rounding error
     double half = 0;                  ///< the distance from place 0 to place 1
-    std::span<const double> rests{};  ///< rounding errors of the times, for terms that resolve them
-    std::vector<Turn> turns{};        ///< cached for each sine
+    std::span<const double> rests{};  ///< rounding errors of the times, for terms that support them
+    std::vector<Turn> turns{};        ///< tabulated sines, one entry for each frequency
     std::size_t next_turn = 0;
 
     const Turn& turn(double omega);
@@ -62,21 +62,21 @@ public:
     /// Returns whether M depends on theta or velocity.
     [[nodiscard]] bool has_feedback() const;
     [[nodiscard]] bool has_script() const;
-    /// Returns whether all terms can be evaluated at times between two doubles.
+    /// Returns whether all terms can be evaluated at times that lie between two doubles.
     [[nodiscard]] bool tells_rests() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many values were computed: fewer if one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 
-    /// After a value that was not finite: returns whether the functions in M may be evaluated at other times.
+    /// Returns, after a value that was not finite, whether the functions in M may be evaluated at other times.
     [[nodiscard]] bool may_go_on() const;
     /// Calls `call` with each user function.
     void each_function(const std::function<void(UserFunction&)>& call) const;
 
     [[nodiscard]] Excitation scaled(double gain) const;
     [[nodiscard]] Excitation delayed(double delay) const;
-    /// The same, but 0 outside from <= t < to.
+    /// This excitation, but 0 outside from <= t < to.
     [[nodiscard]] Excitation windowed(double from, double to) const;
-    /// The same with every user function replaced.
+    /// This excitation with every user function replaced.
     using FunctionChange = std::function<std::shared_ptr<UserFunction>(const std::shared_ptr<UserFunction>&)>;
     [[nodiscard]] Excitation with_functions(const FunctionChange& other) const;
     friend Excitation operator+(const Excitation& a, const Excitation& b);
@@ -85,7 +85,7 @@ public:
 
 private:
     explicit Excitation(Components components) : components_(std::move(components)) {}
-    /// The same with `change` applied to every component.
+    /// This excitation with `change` applied to every component.
     template <class Change>
     [[nodiscard]] Excitation changed(Change change) const;
 

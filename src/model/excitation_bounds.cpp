@@ -1,5 +1,5 @@
-// What an excitation of native terms gives for many times at once. Terms with a closed form describe the piece between
-// two breaks by it.
+// Encloses an excitation of native terms over a range of times. Between two breaks, terms with a closed form are
+// evaluated by it.
 #include <algorithm>
 
 #include "model/bounds.hpp"
@@ -25,7 +25,7 @@ Disc calculated(Op op, const Disc& a, const Disc& b) {
     return image(op, a, b, c);
 }
 
-/// The sum of what terms are on one piece, for the times that it is made with; see closed_form.hpp.
+/// Adds up the terms on one smooth piece, over the times given to the constructor; see closed_form.hpp.
 template <class Number>
 class Values {
 public:
@@ -34,10 +34,10 @@ public:
     void set_gain(double gain) { gain_ = exactly<Number>(gain); }
     void add(const Number& x) { sum_ = of(Op::add, sum_, of(Op::multiply, gain_, x)); }
     [[nodiscard]] const Number& sum() const { return sum_; }
-    /// The greatest number on the way there.
+    /// The greatest magnitude of an intermediate result, for the rounding error.
     [[nodiscard]] double greatest() const { return greatest_; }
 
-    // What a term says.
+    // Called by the terms' closed_form().
     void add_constant(double level) { add(exactly<Number>(level)); }
     void add_line(double at, double level, double slope) {
         add(plus(times(exactly<Number>(slope), since(at)), exactly<Number>(level)));
@@ -54,7 +54,7 @@ public:
     void add_exponential(double amplitude, double rate, double at) {
         add_exponential_of(amplitude, times(exactly<Number>(rate), since(at)));
     }
-    // And those without a closed form.
+    // Terms without a closed form.
     void add(const Gaussian& bump) {
         const Number x = of(Op::divide, since(bump.at), exactly<Number>(bump.sigma));
         const Number square = of(Op::power, x, exactly<Number>(2));
@@ -89,7 +89,7 @@ private:
     void add_sine_of(double amplitude, const Number& angle) {
         add(times(exactly<Number>(amplitude), of(Op::sin, angle, angle)));
     }
-    /// The exponent has roundings of its own.
+    /// Adds the rounding error of the exponent first.
     void add_exponential_of(double amplitude, Number exponent) {
         if constexpr (std::is_same_v<Number, Interval>) {
             constexpr double some = 4 * std::numeric_limits<double>::epsilon();
@@ -102,7 +102,7 @@ private:
     double greatest_ = 0;
 };
 
-/// The component on the piece in which `inside` lies.
+/// Adds the component on the smooth piece that contains the time `inside`.
 template <class Number>
 void add(const Component& c, double inside, Values<Number>& sum) {
     if (c.gain == 0 || inside < c.from || inside >= c.to) return;

@@ -8,7 +8,7 @@ namespace dinal::model {
 
 namespace {
 
-/// Returns whether all are integer fractions of `common`.
+/// Returns whether `common` is an integer multiple of all periods.
 bool fit(const std::vector<double>& periods, double common) {
     return std::all_of(periods.begin(), periods.end(), [common](double period) {
         const double n = common / period;

@@ -19,7 +19,7 @@ double from_bits(std::uint64_t x) {
     return std::bit_cast<double>(x);
 }
 
-/// As Lua defines them: the sign is that of the divisor, and a quotient rounds down.
+/// Modulo and floor division as Lua defines them: the sign is that of the divisor, and a quotient rounds down.
 double float_modulo(double a, double b) {
     const double rest = std::fmod(a, b);
     return (rest > 0 ? b < 0 : rest < 0 && b > 0) ? rest + b : rest;
@@ -42,8 +42,8 @@ bool rounded(double x, double& to) {
     return true;
 }
 
-/// An operation with whole numbers, or from one kind of number to the other. Returns false if it fails, and for any
-/// other operation.
+/// Applies an operation on whole numbers or a conversion between whole numbers and floats. Returns false if it fails,
+/// and for any other operation.
 inline bool operate_on_whole(Op op, double a, double b, double& to) {
     switch (op) {
         case Op::add_whole:
@@ -84,7 +84,7 @@ inline bool operate_on_whole(Op op, double a, double b, double& to) {
     }
 }
 
-/// Any operation that is no condition; those with floats are the frequent ones.
+/// Applies any operation except conditions. Operations on floats are tested first, as they are the most frequent.
 [[gnu::always_inline]] inline bool operate(Op op, double a, double b, double& to) {
     switch (op) {
         case Op::move:
@@ -225,8 +225,8 @@ void Formula::start(double t, const State& state, std::span<const double> states
 
 namespace {
 
-/// Runs the program. `held`, called with a step and its operands, may do the step itself, and returns the next one
-/// then.
+/// Runs the program. `held` is called before each step with its operands; it may execute the step itself and then
+/// returns the next step, otherwise null.
 template <class Held>
 double run(const Formula::Step* first, double* r, const Held& held) {
     for (const Formula::Step* s = first;;) {
@@ -273,17 +273,17 @@ double Formula::value(double t, const State& state, std::span<const double> stat
 
 namespace {
 
-/// Its result is one of a row of constants, whatever it is made of.
+/// Returns whether the result is piecewise constant whatever the operands are.
 bool is_staircase(Op op) {
     return op == Op::floor || op == Op::ceil || op == Op::floor_divide;
 }
 
-/// Returns the sources of a result, from those of its operands.
+/// Returns the sources (a bit mask of arguments) of a result from those of its operands.
 std::uint64_t sources_of(Op op, std::uint64_t a, std::uint64_t b) {
     return is_staircase(op) ? 0 : a | b;
 }
 
-/// The result on that piece, and beyond it.
+/// The result of a fold whose decision is fixed, also beyond its piece.
 double result_on(Op op, double a, double b, double decision) {
     switch (op) {
         case Op::abs:
@@ -298,13 +298,13 @@ double result_on(Op op, double a, double b, double decision) {
     }
 }
 
-/// The number of ends of the piece: one, or one below and one above. Values that differ have none, since they are equal
-/// for no time.
+/// The number of conditions that end a piece: one, or two (below and above). Unequal values have none, because they
+/// become equal only at isolated times.
 int conditions_of(Op op, double decision) {
     return is_comparison(op) ? (op == Op::equal && decision == 0 ? 0 : 1) : op == Op::abs ? 1 : 2;
 }
 
-/// The distances to these ends; an equality ends as soon as the two differ.
+/// The distances to the ends of the piece; an equality ends as soon as the two differ.
 std::pair<double, double> margins_of(Op op, double a, double b, double decision) {
     switch (op) {
         case Op::less:
@@ -327,7 +327,7 @@ std::pair<double, double> margins_of(Op op, double a, double b, double decision)
 
 }  // namespace
 
-/// The sources of each register at the start, as bits.
+/// The sources of each register at the start, as bit masks.
 std::vector<std::uint64_t> Formula::sources() const {
     std::vector<std::uint64_t> of(registers_.size());
     std::uint64_t bit = 1;
@@ -337,10 +337,10 @@ std::vector<std::uint64_t> Formula::sources() const {
     return of;
 }
 
-/// Returns whether a step with such an operation depends on theta, velocity or a state.
+/// Returns whether a step with a `wanted` operation depends on theta, velocity or a state.
 bool Formula::depends_on_motion(bool (*wanted)(Op op)) const {
     using Sources = std::vector<std::uint64_t>;
-    std::map<std::size_t, Sources> ways;  // what comes to a step
+    std::map<std::size_t, Sources> ways;  // the sources with which a step is reached
     const auto lead = [&ways](std::size_t to, const Sources& of) {
         Sources& there = ways.try_emplace(to, of).first->second;
         for (std::size_t i = 0; i < of.size(); ++i) there[i] |= of[i];
@@ -370,7 +370,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
                       .owner = piece.owner};
     start(t, state, states);
     std::vector<std::uint64_t> of = sources();
-    std::vector<std::uint64_t> jumps_with = of;  // what a staircase depends on, too
+    std::vector<std::uint64_t> jumps_with = of;  // sources that also pass through staircases
     double* const r = registers_.data();
     for (std::size_t at = 0; steps_[at].op < Op::give;) {
         const Step& s = steps_[at];
@@ -382,7 +382,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
         if (both != 0 && (compares || is_fold(s.op))) {
             double decision = decision_of(s.op, a, b, result);
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
-            // A value that has jumped along with another condition is not on its old piece.
+            // A value that has jumped by more than one step left its old piece.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
             if ((all & again) == 0 && before == before && is_beside) decision = before;
             if (std::fabs(decision) < whole_numbers) {
@@ -484,7 +484,7 @@ double rate_of(Op op, double a, double b, double da, double db) {
     }
 }
 
-/// The same of a fold that keeps its decision.
+/// The rate of a fold that keeps its decision.
 double rate_on(Op op, double da, double db, double decision) {
     if (op == Op::abs) return decision < 0 ? -da : da;
     return op == Op::modulo || op == Op::fmod ? da - decision * db : 0;
@@ -529,14 +529,14 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
 
 /// The values that a register may have while t goes through an interval.
 struct Formula::Range : bounds::Interval {
-    bool of_motion = false;   ///< it hangs on theta, velocity or a state
-    bool folds = false;       ///< it has a step or a kink within
-    std::uint64_t piece = 0;  ///< stands for the pieces, between folds, that it is made of
+    bool of_motion = false;   ///< whether it depends on theta, velocity or a state
+    bool folds = false;       ///< whether a jump or kink lies within
+    std::uint64_t piece = 0;  ///< hash of the fold pieces that it is made of; 0: none
 
     [[nodiscard]] bool is_known() const { return !of_motion && is_one(); }
 };
 
-/// One look at the program for all t of an interval: which way it goes, if that is the same way for all of them.
+/// Evaluates the program over all t of an interval at once and records its branches, if these are the same for all t.
 class Formula::Look {
 public:
     Look(const Formula& formula, Breaks which) : formula_(formula), which_(which) {
@@ -546,7 +546,7 @@ public:
         std::fill_n(ranges_.begin() + static_cast<std::ptrdiff_t>(formula.states_), formula.state_count_, unknown);
     }
 
-    /// A number that stands for the ways; none when they differ, or when that cannot be told.
+    /// A hash of the branches taken; empty if they differ within the interval or cannot be determined.
     std::optional<std::uint64_t> over(double from, double to) {
         seen_ = 0xcbf29ce484222325U;
         forks_ = 0;
@@ -558,8 +558,7 @@ public:
         if (formula_.motion_) std::tie(ranges_[1], ranges_[2]) = motion;
         return same ? std::optional(seen_) : std::nullopt;
     }
-    /// After a look that saw several ways: at which part of the interval another one may begin; NaN when nothing is
-    /// known.
+    /// After a result that was empty: the fraction of the interval at which a branch may change; NaN if unknown.
     [[nodiscard]] double part() const { return part_; }
 
 private:
@@ -596,7 +595,7 @@ private:
                 if (fails_) return note(at), true;
                 result.of_motion = a.of_motion || b.of_motion;
                 result.folds = result.folds || a.folds || b.folds;
-                // The step is mixed in, or equal pieces of both operands would cancel.
+                // The index of the step is mixed in, or equal pieces of both operands would cancel.
                 if (a.piece != 0 || b.piece != 0) {
                     for (const std::uint64_t piece : {at + 1, a.piece, b.piece}) {
                         result.piece = (result.piece ^ piece) * prime;
@@ -611,7 +610,7 @@ private:
     static bool takes_whole(Op op) {
         return (op >= Op::add_whole && op <= Op::exact) || (op >= Op::less_whole && op <= Op::equal_whole);
     }
-    /// The range of an operand; one of whole numbers becomes one of floats.
+    /// The range of an operand, with whole numbers converted to floats.
     static bounds::Interval as_floats(Op op, const Range& r) {
         if (r.is_anything() || !takes_whole(op)) return r;
         return {static_cast<double>(to_whole(r.lo)), static_cast<double>(to_whole(r.hi))};
@@ -659,7 +658,7 @@ private:
         }
         return r;
     }
-    /// An excitation has a piece between two breaks.
+    /// The pieces of an excitation are the intervals between its breaks.
     void fold(const Excitation& excitation, const Range& time, Range& r) {
         constexpr double end_of_time = 1e300;
         if (which_ == Breaks::own) return;
@@ -669,7 +668,7 @@ private:
         if (r.folds && !time.folds) part_ = (next - from) / (time.hi - from);
     }
     static std::uint64_t piece_of(double decision) { return bits(decision + 0.0) + 1; }
-    /// The operand at which the piece ends for rising values.
+    /// The value of the operand a, rising, at which its piece ends.
     static double next_fold(Op op, double a, double b, double result) {
         switch (op) {
             case Op::abs:
@@ -698,7 +697,7 @@ private:
 
 namespace {
 
-/// Numbers that follow one another as floats do.
+/// Maps doubles to consecutive integers in the same order.
 std::int64_t rank(double x) {
     const std::int64_t whole = to_whole(x);
     return whole < 0 ? std::numeric_limits<std::int64_t>::min() - whole : whole;
@@ -707,8 +706,7 @@ double at_rank(std::int64_t rank) {
     return from_whole(rank < 0 ? std::numeric_limits<std::int64_t>::min() - rank : rank);
 }
 
-/// Returns where to divide an interval: a little before or behind the place at which a change is suspected, and each
-/// third time in its middle.
+/// Returns where to divide an interval: just before or after the suspected change, and each third time in its middle.
 double cut(double from, double to, double part, int turn) {
     constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
     const double place = from + (turn % 3 == 1 ? part : 1 - part) * (to - from);
@@ -730,8 +728,8 @@ double Formula::next_break(double t, Breaks which) {
     constexpr double end_of_time = 1e300;
     if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
     const double found = search(t + 0.0, which);  // not -0
-    // Breaks that come on and on where nothing much changes are roundings, or digits that somebody has cut off: no
-    // events, but roughness.
+    // A long series of breaks with tiny jumps comes from rounding or truncated digits: it counts as roughness, not
+    // as events.
     constexpr int most_alike = 30;
     double last = t, next = found;
     for (int n = 0; is_dubious(last, next); ++n) {
@@ -743,7 +741,7 @@ double Formula::next_break(double t, Breaks which) {
     return found;
 }
 
-/// The next change is next to this one, or next to nothing.
+/// Returns whether the break at `found` follows t too closely, or its jump is tiny although not rounding.
 bool Formula::is_dubious(double t, double found) {
     constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
     if (found == never || is_of_excitation(found)) return false;
@@ -759,7 +757,7 @@ bool Formula::is_dubious(double t, double found) {
     return jump < small * greatest_ && jump > rounding * greatest_;
 }
 
-/// Returns whether only an excitation breaks there, as its author has declared.
+/// Returns whether only an excitation breaks there, as declared by its author.
 bool Formula::is_of_excitation(double found) const {
     if (excitations_.empty()) return false;
     Look look(*this, Breaks::own);
@@ -767,14 +765,14 @@ bool Formula::is_of_excitation(double found) const {
     return look.over(before, before) == look.over(found, found);
 }
 
-// The interval from t on is divided, the earlier part first, until the program goes one way in each part.
+// Bisects the interval from t on, the earlier part first, until the program takes the same branches over each part.
 double Formula::search(double t, Breaks which) {
     constexpr double end_of_time = 1e300, least = 1e-300, rounding = std::numeric_limits<double>::epsilon();
     constexpr int most_looks = 4000, most_unfinished = 20, most_flips = 60;
     std::map<double, double>& known = known_[which == Breaks::all ? 1 : 0];
     const auto behind = known.upper_bound(t);
     if (behind != known.begin() && std::prev(behind)->second > t) return std::prev(behind)->second;
-    // A change within rounding of t counts as past, and rounding may make a comparison flicker about its change.
+    // A change within rounding of t counts as past, because rounding can make a comparison flicker near its change.
     const bool at_break = behind != known.begin() && std::prev(behind)->second == t;
     const double flicker = t + std::max(least, (at_break ? 64 : 4) * rounding * std::fabs(t));
 

@@ -18,8 +18,8 @@
 
 namespace dinal::model {
 
-/// An operation on registers. Floats and whole numbers (64 bits that wrap) are told apart by the operation, not by the
-/// register.
+/// An operation on registers. Floats and whole numbers (64 bits that wrap) are distinguished by the operation, not by
+/// the register.
 enum class Op : std::uint16_t {
     move,
     // floats
@@ -44,7 +44,7 @@ enum class Op : std::uint16_t {
     sqrt,
     abs,
     fmod,
-    native,  ///< the value at a time (a) of the excitation whose address b holds; fails at a time that is not finite
+    native,  ///< the value at a time (a) of the excitation whose address b holds; fails if the time is not finite
     // whole numbers
     add_whole,
     subtract_whole,
@@ -53,29 +53,30 @@ enum class Op : std::uint16_t {
     divide_whole,
     negate_whole,
     abs_whole,
-    // from whole to float, and back; `exact` is the former but fails beyond 2^53, the latter two fail beyond 64 bits
+    // conversions: `exact` fails for whole numbers beyond 2^53, floor and ceil fail beyond 64 bits
     to_float,
     exact,
     floor,
     ceil,
-    // conditions: go on at `yes` or `no`
+    // conditions: continue at the step `yes` or `no`
     less,
     less_equal,
     equal,
     less_whole,
     less_equal_whole,
     equal_whole,
-    jump,  ///< to `yes`
+    jump,  ///< continues at `yes`
     give,
     give_whole,
-    fail,  ///< what the function does here is left to the function
+    fail,  ///< the formula has no result here: call the function itself
 };
 
-/// The operation on two registers (of one operand: the same twice); false where it fails, as a whole number // 0 does.
+/// Applies the operation to two registers (a unary operation gets the same one twice). Returns false on failure, such
+/// as an integer division by 0; a comparison returns its truth.
 bool apply(Op op, double a, double b, double& to);
 
-/// The piece of an operation on which a result lies: whether a comparison holds, the sign within abs, the whole part of
-/// a quotient.
+/// The decision that selects the smooth piece of an operation: the truth of a comparison, the sign of the operand of
+/// abs, the integer quotient.
 double decision_of(Op op, double a, double b, double result);
 
 inline bool is_comparison(Op op) {
@@ -86,14 +87,14 @@ inline bool is_fold(Op op) {
            op == Op::fmod;
 }
 
-/// A register holds either; a whole number in its bits.
+/// A register holds a double; a whole number is stored as its bits.
 inline double from_whole(std::int64_t whole) {
     return std::bit_cast<double>(whole);
 }
 inline std::int64_t to_whole(double bits) {
     return std::bit_cast<std::int64_t>(bits);
 }
-/// Or the address of an excitation of native terms, which the formula owns.
+/// A register can also hold the address of an excitation of native terms that the formula owns.
 inline double from_excitation(const Excitation& excitation) {
     return std::bit_cast<double>(&excitation);
 }
@@ -101,7 +102,7 @@ inline const Excitation& to_excitation(double bits) {
     return *std::bit_cast<const Excitation*>(bits);
 }
 
-/// Steps only lead forward, so that a program is bounded by its length.
+/// The program of a function. Jumps only lead forward, so the number of steps bounds its run time.
 class Formula {
 public:
     struct Step {
@@ -110,59 +111,58 @@ public:
         std::uint32_t yes = 0, no = 0;
     };
     using Excitations = std::vector<std::shared_ptr<const Excitation>>;
-    /// Registers at the start: t comes into the first, with `motion` theta and velocity into the next two, and so many
-    /// states from `states` on.
-    /// `timeless`: t is a speed. `excitations` are those whose addresses stand in registers.
+    /// `registers` are the initial values. The first register receives t (or the speed, if `timeless`), the next two
+    /// theta and velocity if `motion`, and `state_count` registers from index `states` the states. `excitations` owns
+    /// those whose addresses are in registers.
     Formula(std::vector<Step> steps, std::vector<double> registers, bool motion, std::size_t states,
             std::size_t state_count, bool timeless = false, Excitations excitations = {});
 
-    /// NaN where the function must be asked.
+    /// Returns NaN if the formula fails and the function itself must be called.
     [[nodiscard]] double value(double t, const State& state, std::span<const double> states);
 
-    /// See terms::UserFunction. Bits stand for theta and velocity, with `motion`, and then the states; the last one for
-    /// a speed.
+    /// See terms::UserFunction. In `again`, the first bits stand for theta and velocity (if `motion`), the next for the
+    /// states, the last bit for the speed.
     void decide(terms::Piece& piece, double t, const State& state, std::span<const double> states, std::uint64_t again);
     [[nodiscard]] double value_on(const terms::Piece& piece, double t, const State& state,
                                   std::span<const double> states, std::vector<double>* margins);
 
-    /// The rate at which that margin of a piece changes along a motion with these rates; NaN if it has none.
+    /// The rate of change of margin `condition` of the piece along a motion with these rates; NaN if it is unknown.
     [[nodiscard]] double margin_rate(const terms::Piece& piece, std::size_t condition, double t, const State& state,
                                      std::span<const double> states, const State& rate, std::span<const double> rates);
 
-    /// The first time after t at which a condition of t changes: a comparison, the sign within abs, the step of floor,
-    /// ceil, // or %, or at which an excitation in it breaks. It is the very double at which the function itself sees
-    /// the change.
+    /// The first time after t at which a condition of t changes: a comparison, the sign within abs, a step of floor,
+    /// ceil, // or %, or a break of an excitation. The result is the exact double at which the function changes.
     [[nodiscard]] double next_break(double t);
-    /// The same without the breaks of excitations.
+    /// Like next_break(t), but ignores the breaks of excitations.
     [[nodiscard]] double next_condition(double t) { return next_break(t, Breaks::own); }
-    /// So long a time is of interest now: conditions that change far more often are noise, and no breaks.
+    /// Sets the time span of interest. Conditions that change very often within it are treated as noise, not as breaks.
     void begin(double span) {
         if (span != span_) knows_greatest_ = false, greatest_ = 0;
         span_ = span, gave_up_ = false, unfinished_ = 0;
     }
 
-    /// The native terms whose sum it is, to rounding, from a time on, as long as its conditions are what they are at
-    /// the time `inside`; none if it is no such sum.
+    /// The formula as a sum of native terms of the time since `from`, to rounding. It is valid while the conditions
+    /// hold that hold at the time `inside`. Empty if the formula is no such sum.
     [[nodiscard]] std::optional<Excitation> terms(double from, double inside) const;
-    /// After which time it is proven to repeat; 0 when that is not known, or when it is constant.
+    /// The proven period in t; 0 if none is known or the formula is constant.
     [[nodiscard]] double period() const;
 
-    // Its parts, for those who run it on other numbers.
+    // The program, for evaluation with other kinds of numbers.
     [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
     [[nodiscard]] const std::vector<double>& registers() const { return registers_; }
     [[nodiscard]] bool takes_motion() const { return motion_; }
     [[nodiscard]] std::size_t first_state() const { return states_; }
     [[nodiscard]] std::size_t state_count() const { return state_count_; }
 
-    /// It compares, rounds or folds at all.
+    /// Returns whether the formula compares, rounds or folds at all.
     [[nodiscard]] bool has_conditions() const { return has_conditions_; }
-    /// Such a condition depends on theta, velocity or a state.
+    /// Returns whether a condition depends on theta, velocity or a state.
     [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
-    /// Returns whether an excitation in it is evaluated at a time that depends on these.
+    /// Returns whether an excitation is evaluated at a time that depends on theta, velocity or a state.
     [[nodiscard]] bool moves_excitations() const {
         return !excitations_.empty() && depends_on_motion([](Op op) { return op == Op::native; });
     }
-    /// The times of its conditions could not be found in bounded work: next_break() says `never`.
+    /// Returns whether the search for break times exceeded its limit; next_break() then returns `never`.
     [[nodiscard]] bool gave_up() const { return gave_up_; }
 
 private:
@@ -183,9 +183,9 @@ private:
     bool motion_;
     std::size_t states_, state_count_;
     bool timeless_, has_conditions_, of_motion_, gave_up_ = false;
-    std::array<std::map<double, double>, 2> known_;  ///< from a time to the next break, of its own and of all
-    int unfinished_ = 0;                             ///< searches that ended before they found one
-    double span_ = 1, greatest_ = 0;                 ///< value at some times
+    std::array<std::map<double, double>, 2> known_;  ///< from a time to the next break, for Breaks::own and Breaks::all
+    int unfinished_ = 0;                             ///< searches that hit their limit without finding a break
+    double span_ = 1, greatest_ = 0;                 ///< time span of interest; the greatest |value| at sample times
     bool knows_greatest_ = false;
 };
 

@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t most_powers = 4;
 
-/// c[0] + c[1] x + ... + sines + exponentials, where x is the time since the beginning of a piece: counted from t = 0
-/// the digits of a short piece far from there would cancel.
+/// c[0] + c[1] x + ... + sines + exponentials, where x is the time since the beginning of a piece. Powers of t itself
+/// would cancel on a short piece far from t = 0.
 struct TermSum {
     struct Grown {
         double amplitude, rate;
@@ -19,7 +19,7 @@ struct TermSum {
     std::vector<double> powers{};
     std::vector<Harmonic> sines{};
     std::vector<Grown> exponentials{};
-    Excitation others{};  ///< of the time itself
+    Excitation others{};  ///< terms given as functions of t itself
 
     [[nodiscard]] bool is_polynomial() const {
         return sines.empty() && exponentials.empty() && others.components().empty();
@@ -38,7 +38,7 @@ struct TermSum {
         for (const Grown& one : other.exponentials) exponentials.push_back({gain * one.amplitude, one.rate});
         if (!other.others.components().empty()) others = others + other.others.scaled(gain);
     }
-    /// Sines of one pace are one.
+    /// Sines of the same frequency are combined.
     void add(const Harmonic& sine) {
         for (Harmonic& own : sines) {
             if (own.omega != sine.omega) continue;
@@ -95,7 +95,7 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
                                       .phase = sign * a.power(0) + quarter}}};
         }
         case Op::exp: {
-            // What grows from next to nothing would have lost its digits, or itself, in its first value.
+            // A growing exponential with a tiny first value would lose its digits, or underflow.
             constexpr double faintest = 1e-200;
             const double first = std::exp(a.power(0)), rate = a.power(1);
             if (!a.is_line() || (rate > 0 && first < faintest)) return {};
@@ -106,14 +106,14 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
     }
 }
 
-/// The growth of a value in each period: x(t + period) = x(t) + slope period. A period of 0 stands for any.
+/// Growth per period: x(t + period) = x(t) + slope period. A period of 0 fits any period.
 struct Repeating {
     double slope = 0, period = 0;
     std::optional<double> constant = {};
     bool operator==(const Repeating&) const = default;
 };
 
-/// The least common period, if the longer one comes a few times in it.
+/// The least common period; empty if it exceeds `most_beats` times the longer one.
 std::optional<double> common_period(double a, double b) {
     if (a == 0 || b == 0) return a + b;
     constexpr int most_beats = 60;
@@ -124,7 +124,7 @@ std::optional<double> common_period(double a, double b) {
     return {};
 }
 
-/// The same with a period in which it grows by a whole number of `steps`.
+/// The same growth with a period that raises x by a multiple of `step`.
 std::optional<Repeating> in_steps(Repeating x, double step) {
     if (x.slope == 0) return x;
     const auto common = common_period(x.period, std::fabs(step / x.slope));
@@ -133,7 +133,7 @@ std::optional<Repeating> in_steps(Repeating x, double step) {
     return x;
 }
 
-/// After which time an excitation repeats: none if it does not, 0 if it is constant.
+/// The period of an excitation: empty if it has none, 0 if it is constant.
 std::optional<double> period_of(const Excitation& excitation) {
     std::optional<double> all = 0;
     for (const Component& c : excitation.components()) {
@@ -204,7 +204,7 @@ std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) 
 double Formula::period() const {
     using Registers = std::vector<std::optional<Repeating>>;
     if (motion_ || state_count_ != 0) return 0;
-    std::map<std::size_t, Registers> ways;  // what comes to a step
+    std::map<std::size_t, Registers> ways;  // the registers with which a step is reached
     std::optional<double> all = 0;
     const auto take = [&all](const std::optional<Repeating>& x) {
         all = all && x && x->slope == 0 ? common_period(*all, x->period) : std::nullopt;
@@ -220,7 +220,7 @@ double Formula::period() const {
     };
     lead(0, Registers(registers_.size(), Repeating{}));
     ways[0][0] = Repeating{.slope = 1};
-    // A constant is known by the operation that reads it, as a float or as a whole number.
+    // The type of a constant, float or whole number, is determined by the operation that reads it.
     std::vector<char> written(registers_.size(), 0);
     written[0] = 1;
     for (const Step& s : steps_) {
@@ -255,7 +255,7 @@ double Formula::period() const {
 
 namespace {
 
-/// The excitation at a time that is a line of the slope 1, as a sum.
+/// The excitation evaluated at a time of slope 1, as a sum.
 std::optional<TermSum> delayed(const Excitation& excitation, const TermSum& time, double from) {
     if (!time.is_line() || time.power(1) != 1) return {};
     const double by = from - time.power(0);
@@ -295,7 +295,7 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         std::optional<TermSum> made;
         const bool staircase = s.op == Op::floor || s.op == Op::ceil || s.op == Op::floor_divide;
         if (staircase || (s.op >= Op::add_whole && s.op <= Op::exact)) {
-            made = TermSum{.powers = {result}};  // a constant of this piece
+            made = TermSum{.powers = {result}};  // constant on this piece
         } else if (a && s.op == Op::abs) {
             made = product_of(*a, {.powers = {x < 0 ? -1.0 : 1.0}});
         } else if (a && b && (s.op == Op::modulo || s.op == Op::fmod)) {
@@ -307,7 +307,7 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         } else if (a && b) {
             made = result_of(s.op, *a, *b);
         }
-        // A value calculated from constants keeps its bits.
+        // A value computed from constants alone is kept bit for bit.
         if (!made && a && b && a->is_constant() && b->is_constant()) made = TermSum{.powers = {result}};
         registers[s.to] = made;
         r[s.to] = result;

@@ -38,7 +38,7 @@ concept FrictionLaw = requires(const Law& law, Motion way, double speed) {
     /// The largest pull this way that sticking can hold.
     { law.holding(way) } -> std::same_as<double>;
     { Law::depends_on_speed } -> std::convertible_to<bool>;
-    /// An error if its numbers are invalid.
+    /// An error if the numbers of the law are invalid.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
 };
 
@@ -68,7 +68,7 @@ protected:
 };
 
 // A law may also have
-//     std::string lua_text() const;   the Lua expression that makes it again
+//     std::string lua_text() const;   the Lua expression that constructs the law
 // and, for both directions alike, what lets an integrator predict its corners instead of searching for them:
 //     std::size_t ranges() const;                    their number, from speed 0 on and without gaps
 //     model::SpeedRange range(std::size_t i) const;
@@ -99,10 +99,10 @@ public:
         return law_ ? normal_ * law_->sliding(way, speed) : 0;
     }
     [[nodiscard]] double holding(Motion way) const { return law_ && normal_ > 0 ? normal_ * law_->holding(way) : 0; }
-    /// Returns whether it never lets the contact slip backward.
+    /// Returns whether the law never lets the contact slip backward.
     [[nodiscard]] bool is_one_way() const { return std::isinf(holding(Motion::backward)); }
     [[nodiscard]] bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
-    /// Rd; of a direction-dependent law the greater one; for a law without Rd its torque at speed 0.
+    /// Rd; the greater one if they depend on the direction; the torque at speed 0 for a law without Rd.
     [[nodiscard]] double kinetic() const;
     /// The number of smooth ranges; 0 if the law does not declare them.
     [[nodiscard]] std::size_t ranges() const { return law_ ? law_->ranges() : 0; }

@@ -10,7 +10,7 @@
 
 namespace dinal::model {
 
-// The value with each user function and each excitation replaced by `other`'s result.
+// Returns the value with each user function and excitation replaced by `other` of it.
 
 Friction with_functions(const Friction& law, auto&& other) {
     const auto* own = law.as<laws::UserLaw>();

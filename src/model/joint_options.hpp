@@ -1,4 +1,4 @@
-// A body or link as the options that make it again.
+// Writes a body or link as the options that construct it.
 #pragma once
 
 #include "model/laws/coulomb.hpp"

@@ -47,7 +47,7 @@ public:
         return friction_remainder(way, state) + spring(state.theta);
     }
     [[nodiscard]] bool has_spring() const { return spring_ != nullptr; }
-    /// The friction part of it, 0 at velocity zero.
+    /// The friction part of the remainder; 0 at velocity zero.
     [[nodiscard]] double friction_remainder(Motion way, const State& state) const {
         if (friction_ == nullptr) return 0;
         const double sign = sign_of(way);
@@ -55,7 +55,7 @@ public:
     }
     /// The nonlinear spring torque, positive against theta.
     [[nodiscard]] double spring(double theta) const { return spring_ == nullptr ? 0 : spring_->torque(theta); }
-    /// The energy stored in that spring, torque times rad.
+    /// The energy stored in the nonlinear spring, torque times rad.
     [[nodiscard]] double spring_energy(double theta) const { return spring_ == nullptr ? 0 : spring_->energy(theta); }
     /// The torque of all springs, k theta included.
     [[nodiscard]] double pull_back(double theta) const {

@@ -58,7 +58,7 @@ text::Expected<Oscillator> Oscillator::make(const OscillatorParameters& p) {
                                     p.inertia, p.damping),
             .option = "I"};
     }
-    // Integrators use the fourth power of the frequency as a bound.
+    // The integrators compute the fourth power of the frequency.
     if (!std::isnormal(std::pow(o.natural_frequency(), 4)) || !std::isnormal(std::pow(o.natural_period(), 4)) ||
         !std::isfinite(o.damping() / o.inertia()) || !std::isfinite(o.dead_zone()) ||
         !std::isfinite(o.damping_ratio())) {

@@ -95,11 +95,11 @@ public:
     [[nodiscard]] const Units& units() const;
     /// Returns whether k is the only spring, so that quantities derived from k are valid.
     [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
-    /// After a torque that was not finite: returns whether the user's functions may be evaluated again.
+    /// Returns, after a torque that was not finite, whether the user's functions may be evaluated again.
     [[nodiscard]] bool may_go_on() const;
     /// Rd under the normal load, as all friction torques here.
     [[nodiscard]] double kinetic_friction() const { return friction_.kinetic(); }
-    /// Re; of a direction-dependent law the greater one.
+    /// Re; the greater one if it depends on the direction.
     [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
 
     /// Returns whether k > 0. Without k there is no natural frequency, period, damping ratio or preferred place of
@@ -127,7 +127,7 @@ public:
     /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
     [[nodiscard]] double characteristic_torque(const State& initial) const;
 
-    /// The parameters that make it again, the friction law included.
+    /// The parameters that construct this system, the friction law included.
     [[nodiscard]] OscillatorParameters parameters() const;
 
 private:

@@ -20,13 +20,13 @@ concept SpringLaw = requires(const Law& law, double theta) {
     { law.torque(theta) } -> std::same_as<double>;
     /// The integral of the torque from 0 to theta; NaN if it cannot be computed.
     { law.energy(theta) } -> std::same_as<double>;
-    /// An error if its numbers are invalid.
+    /// An error if the numbers of the law are invalid.
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
-    /// Returns whether it acts alike on both sides.
+    /// Returns whether torque(-theta) = -torque(theta).
     { law.is_odd() } -> std::same_as<bool>;
-    /// After a torque that was not finite: returns whether it may be evaluated again.
+    /// Returns, after a torque that was not finite, whether the spring may be evaluated again.
     { law.may_go_on() } -> std::same_as<bool>;
-    /// The Lua expression that makes it again; empty if there is none.
+    /// The Lua expression that constructs the spring; empty if there is none.
     { law.lua_text() } -> std::same_as<std::string>;
 };
 

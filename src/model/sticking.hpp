@@ -19,17 +19,16 @@ inline double excess_over(double limit, double k, double M, double theta, double
     return std::fma(-k, side * theta, sum) + rest;
 }
 
-/// The torque at velocity zero against what holds. It moves the mass if `beyond` is positive.
+/// The torque that pulls at a stuck mass. The mass breaks away if `beyond` is positive.
 struct Pull {
-    double beyond;   ///< by how much it exceeds the limit
+    double beyond;   ///< excess of the pull over the limit
     Motion towards;  ///< the side to which it pulls
 };
 
-/// The pull of M, a spring k theta and the torque `spring` of a nonlinear one, against the limit of this side: a
-/// razor's edge.
-// NOTE: a stored theta stands for all angles within half a unit of its last place, so k theta is known to 2^-53 |k
-// theta| only. A smaller excess is no breakaway; otherwise theta0 = Re/k would stick or not depending on the rounding
-// of the quotient. M is taken as exact.
+/// The pull of M, a spring k theta and the torque `spring` of a nonlinear one, against the breakaway limit on this
+/// side. NOTE: a stored theta stands for all angles within half a unit of its last place, so k theta is known to 2^-53
+/// |k theta| only. A smaller excess is no breakaway; otherwise theta0 = Re/k would stick or not depending on the
+/// rounding of the quotient. M is taken as exact.
 inline Pull pull_on_spring(double limit, double k, double M, double theta, double spring, Motion towards) {
     constexpr double half_ulp = std::numeric_limits<double>::epsilon() / 2;
     constexpr double few = 8;  // roundings in a user's formula
@@ -38,7 +37,7 @@ inline Pull pull_on_spring(double limit, double k, double M, double theta, doubl
     return {beyond < known ? std::min(beyond, 0.0) : beyond, towards};
 }
 
-/// The pull on a mass at rest.
+/// The pull on a mass stuck at theta.
 inline Pull pull_at_rest(const Lowered& system, double M, double theta) {
     const double k = system.stiffness(), spring = system.spring(theta);
     const Motion towards = std::fma(-k, theta, M - spring) < 0 ? Motion::backward : Motion::forward;

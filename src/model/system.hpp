@@ -1,7 +1,7 @@
 // The general system: several bodies that turn about one axis, and the joints between them. One mass on the ground is
 // the smallest one.
 //
-//     I_i theta_i'' = M_i - I_i a - sum over its joints of the torques that they take
+//     I_i theta_i'' = M_i - I_i a - sum over its joints of joint torques
 //
 // A joint is a place where torque acts: a body against the ground, or a link. Its angle is a weighted sum of body
 // angles; a torque T on it acts on each body times its weight. A joint has the elements of a one-body system:
@@ -158,8 +158,8 @@ struct System {
 /// The system of one unnamed body on the ground.
 System as_system(const Oscillator& body);
 
-/// A body or link seen by itself; for a link, the relative motion of its otherwise free bodies. Fails if its numbers
-/// are out of range.
+/// A body alone, as if all others were at rest, or a link as the relative motion of its two bodies, otherwise free.
+/// Fails if the numbers are out of range.
 text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint);
 
 // Shared, because runs keep it.

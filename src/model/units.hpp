@@ -39,9 +39,9 @@ struct Units {
     [[nodiscard]] std::string in_words() const;
     /// "{ theta = \"m\", t = \"s\" }"
     [[nodiscard]] std::string lua_text() const;
-    /// The line of a file that stores them.
+    /// The line that stores the units in a file.
     [[nodiscard]] std::string in_file() const;
-    /// Reads such a line among these; the usual units without one.
+    /// Reads that line among these lines; returns the usual units if there is none.
     static Units from_file(std::span<const std::string> lines);
 };
 

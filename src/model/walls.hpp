@@ -21,12 +21,12 @@ struct Walls {
     [[nodiscard]] double at(int side) const { return side > 0 ? upper : lower; }
     [[nodiscard]] bool alike() const { return lower == -upper; }
     [[nodiscard]] bool is_elastic() const { return stiffness < std::numeric_limits<double>::infinity(); }
-    /// The torque of the elastic wall on this side, against the depth.
+    /// The torque of the elastic wall on this side at the given angle and velocity, with the sign of the penetration.
     [[nodiscard]] double torque(int side, double theta, double velocity) const {
         return stiffness * (theta - at(side)) + damping * velocity;
     }
 
-    /// An error if their numbers are invalid.
+    /// An error if the numbers are invalid.
     [[nodiscard]] std::optional<text::Error> complaint() const;
     /// An error if a motion cannot start at theta.
     [[nodiscard]] std::optional<text::Error> crossed_by(double theta) const;

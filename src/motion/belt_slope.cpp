@@ -16,12 +16,12 @@ BeltSlope belt_slope(const model::Excitation& belt, double t, double stretch) {
     using namespace chebyshev;
     if (belt.constant_from() <= t) return {0, 0};
     constexpr double smooth = 1e-9, noise = 1e-5, shorter = 0.25;
-    constexpr double clearly_worse = 8;  // a jump doubts 16 times more after two more steps
-    constexpr int most_looks = 23;       // down to 1e-14 of `stretch`
-    constexpr double roundings = 256;    // bound of the rounding of a slope at the end of a polynomial of this degree
+    constexpr double clearly_worse = 8;  // a jump multiplies the doubt by 16 in two more steps
+    constexpr int most_looks = 23;       // samples intervals down to 1e-14 of `stretch`
+    constexpr double roundings = 256;    // factor of rounding in the slope at the end of a polynomial of this degree
     const double next = belt.next_break(t);
     BeltSlope best{0, model::never};
-    // An unannounced jump must not enter the slope before it.
+    // An interval that contains an undeclared jump is halved, so that the jump does not enter the slope before it.
     double h = std::min(stretch, (next - t) / 2);
     for (int look = 0; look < most_looks; ++look) {
         Samples values{};

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// The ends, times between them, events, and the times just before events, where velocity and M may jump.
+/// Returns both ends, evenly spaced times between them, events, and the times just before events, where velocity and M
+/// may jump.
 std::vector<double> first_times(const Run& run, double from, double to) {
     constexpr int intervals = 1000;
     std::vector<double> times;
@@ -26,7 +27,7 @@ std::vector<double> first_times(const Run& run, double from, double to) {
     return times;
 }
 
-/// The invisible deviation of each column.
+/// Returns the deviation of each column that is too small to see in a plot.
 std::vector<double> invisible(const std::vector<double>& values, std::size_t width) {
     constexpr double part = 1e-3, rounding = 1e-12;
     std::vector<double> all;
@@ -56,7 +57,7 @@ BetweenRows::BetweenRows(const Run& run, const model::Excitation* M) : run_(run)
     }
 }
 
-/// Returns false if a user's function now returns other values, as it may if it reads a variable that has changed.
+/// Returns whether M still gives the M of the rows. A user's function may read a variable that has changed since.
 bool BetweenRows::agrees_with_rows() const {
     if (!M_->has_script()) return true;
     constexpr Eigen::Index looks = 20;
@@ -97,8 +98,8 @@ double BetweenRows::interpolated(Eigen::Index column, double t) const {
 }
 
 Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
-    constexpr std::size_t enough = 100'000;  // times; one more pass may double their number
-    constexpr double part = 0.381966;        // the golden section never falls into step with the motion
+    constexpr std::size_t enough = 100'000;  // limit of times; one more pass may double their number
+    constexpr double part = 0.381966;        // the golden section avoids aliasing with the motion
     const double shortest = 1e-5 * (to - from);
     const std::size_t width = columns_.size();
     std::vector<double> times = first_times(run_, from, to), values;

@@ -16,7 +16,7 @@ public:
     /// Keeps references to both. M is the excitation if t, theta and velocity determine it, otherwise null.
     BetweenRows(const Run& run, const model::Excitation* M);
 
-    /// Returns whether the run kept its motion; otherwise only its rows are known.
+    /// Returns whether the run kept its motion; otherwise only its rows are available.
     [[nodiscard]] bool any() const { return !columns_.empty(); }
     /// The columns that can be evaluated at any time.
     [[nodiscard]] const std::vector<Eigen::Index>& columns() const { return columns_; }
@@ -34,7 +34,7 @@ private:
     const Run& run_;
     const model::Excitation* M_;
     std::vector<Eigen::Index> columns_;
-    std::vector<const ColumnKind*> kinds_;  // of each of columns_; nullptr: a state
+    std::vector<const ColumnKind*> kinds_;  // kind of each of columns_; nullptr: a state
 };
 
 }  // namespace dinal::motion

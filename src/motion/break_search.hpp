@@ -55,11 +55,11 @@ Triple most_bent_half(const Triple& t, const F& f) {
     return side.bend() >= centre.bend() ? side : centre;
 }
 
-/// The jump between a and b, if bisection confirms it: across a jump the values stay apart, elsewhere their difference
-/// shrinks. One value for each halving.
+/// The jump between a and b, if bisection confirms it: the difference of the values persists across a jump and shrinks
+/// elsewhere. Evaluates f once for each bisection.
 template <class F>
 std::optional<double> find_jump(double a, double fa, double b, double fb, const F& f) {
-    constexpr int judged_at = 7, judged_again_at = 21;  // the halvings after which it is judged
+    constexpr int judged_at = 7, judged_again_at = 21;  // numbers of bisections after which the difference is tested
     const double at_first = std::fabs(fb - fa);
     for (int i = 1; i <= judged_again_at; ++i) {
         const double middle = a + (b - a) / 2;
@@ -79,7 +79,7 @@ std::optional<double> find_jump(double a, double fa, double b, double fb, const 
 
 }  // namespace detail
 
-/// The most visible jump or kink of f in its values at increasing times, if bisection confirms it: the second
+/// The most visible jump or kink of f in its values at increasing times, if bisection confirms it. The second
 /// difference stays (jump) or halves (kink), while that of a smooth f falls to a quarter.
 template <class F>
 std::optional<double> find_break(std::span<const double> times, std::span<const double> values, const F& f) {
@@ -91,7 +91,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
         if (bend > most) worst = i, most = bend;
     }
     if (worst == 0) return {};
-    // A jump, or one edge of something narrow: between the two values that differ most.
+    // Try a jump, or one edge of a narrow pulse, between the two values that differ most.
     const bool left = std::fabs(values[worst] - values[worst - 1]) >= std::fabs(values[worst + 1] - values[worst]);
     const std::size_t before = left ? worst - 1 : worst;
     if (std::fabs(values[before + 1] - values[before]) >
@@ -102,7 +102,7 @@ std::optional<double> find_break(std::span<const double> times, std::span<const 
     const double a = times[worst - 1], b = times[worst + 1], middle = a + (b - a) / 2;
     detail::Triple t{a, values[worst - 1], middle, f(middle), b, values[worst + 1]};
 
-    constexpr int judged_at = 7;        // the halvings after which it is judged
+    constexpr int judged_at = 7;        // number of bisections after which the bend is tested
     constexpr double smooth = 0x1p-10;  // a kink still bends by 2^-7 or more, a smooth f by 2^-14
     const double at_first = std::max(t.bend(), most);
     if (at_first <= 64 * t.noise()) return {};

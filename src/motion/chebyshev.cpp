@@ -28,7 +28,7 @@ constexpr Matrix<half + 1, columns> polynomials(std::size_t parity) {
 constexpr auto even_terms = polynomials<half + 1>(0);
 constexpr auto odd_terms = polynomials<half>(1);
 
-/// Row i: one term at all nodes.
+/// Transposes: row i holds one term at all nodes.
 template <std::size_t columns>
 constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& terms) {
     Matrix<columns, half + 1> m{};
@@ -40,7 +40,7 @@ constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& term
 constexpr auto even_at = turned(even_terms);
 constexpr auto odd_at = turned(odd_terms);
 
-/// Row j: the weights of f(x_j) + f(-x_j), or of the difference, in the coefficients of that parity.
+/// Row j: the weights of f(x_j) + f(-x_j), or of the difference if odd, in the coefficients of that parity.
 template <std::size_t columns>
 constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
     Matrix<half + 1, columns> m{};
@@ -81,7 +81,7 @@ Series<points> fit(const Samples& f) {
 }
 
 Samples at_nodes(const Series<points>& c) {
-    // All nodes side by side, so that the compiler vectorises.
+    // Loops over all nodes innermost, so that the compiler vectorises.
     std::array<double, half + 1> even{}, odd{};
     for (std::size_t i = 0; i < half; ++i) {
         for (std::size_t j = 0; j <= half; ++j) {

@@ -47,7 +47,7 @@ Series<points> fit(const Samples& f);
 /// The values at the nodes.
 Samples at_nodes(const Series<points>& c);
 
-/// A longer series as its values at the nodes show it: there its last terms equal lower ones, T17 = T15, T18 = T14.
+/// The series of degree 16 with the same values at the nodes as a longer one, because T17 = T15 and T18 = T14 there.
 template <std::size_t n>
 Series<points> folded(const Series<n>& c) {
     static_assert(n > points && n <= 2 * degree);
@@ -79,7 +79,7 @@ double value(const Series<n>& c, double x) {
     return ((c[0] - even_before) + y * even) + x * (odd - odd_before);
 }
 
-/// f(0) + f(1) + ... + f(n - 1), in four parallel sums: an addition need not wait for the one before.
+/// f(0) + f(1) + ... + f(n - 1), in four independent partial sums that the processor adds in parallel.
 template <std::size_t n, class F>
 double sum_of(F f) {
     std::array<double, 4> sums{};
@@ -140,7 +140,7 @@ double size(const Series<n>& c) {
     return sum_of<n>([&](std::size_t k) { return std::fabs(c[k]); });
 }
 
-/// A bound that no value is below.
+/// A lower bound of f.
 template <std::size_t n>
 double least_bound(const Series<n>& c) {
     return c[0] - (size(c) - std::fabs(c[0]));

@@ -21,7 +21,7 @@ public:
         if (checkpoint.step % spacing_ == 0) list_.push_back(checkpoint);
         next_ = (checkpoint.step / spacing_ + 1) * spacing_;
     }
-    /// The last one at or before this step, and the one after it (null at the end).
+    /// The last checkpoint at or before this step, and the next one (null at the end).
     [[nodiscard]] const Checkpoint& before(std::size_t step) const { return list_[index(step)]; }
     [[nodiscard]] const Checkpoint* after(std::size_t step) const {
         const std::size_t i = index(step) + 1;

@@ -12,7 +12,7 @@
 
 namespace dinal::motion {
 
-/// A body or link at the time of a row: all that its columns are computed from.
+/// A body or link at the time of a row: the arguments from which its columns are computed.
 struct AtRow {
     double t = 0;
     model::State y = {};
@@ -22,7 +22,7 @@ struct AtRow {
 };
 
 struct ColumnKind {
-    /// What must be known to compute the column between the rows.
+    /// The data needed to compute the column between the rows.
     enum class By { time, motion, load, contact };
 
     std::string_view name, symbol;
@@ -103,7 +103,7 @@ inline constexpr ColumnKind damping{
     "run = system{ I = 1, k = 1, C = 3 }:simulate{ velocity0 = 1, t_end = 1, dt = 1 }\n"
     "print(run.damping[1])  --> -3.0",
 };
-/// Of a link, and of a body whose motion is prescribed.
+/// A column of links, and of bodies whose motion is prescribed.
 inline constexpr ColumnKind torque{"torque", "torque", Quantity::torque, By::contact,
                                    [](const AtRow& at) { return at.torque; }};
 
@@ -118,7 +118,7 @@ constexpr std::span<const ColumnKind> columns_of(bool is_link) {
     return body_columns;
 }
 
-/// The places in body_columns of those that code names.
+/// The indices in body_columns of the columns that code refers to.
 enum class Column : int { t, theta, velocity, M, friction, damping };
 inline constexpr int column_count = body_columns.size();
 
@@ -131,8 +131,7 @@ constexpr const ColumnKind* find_column_kind(std::string_view name) {
     return nullptr;
 }
 
-/// Calls put(place, value) for each of these columns; `value` computes the column and is inlined, also in a loop over
-/// rows.
+/// Calls put(place, value) for each of `columns`; `value` computes the column and is inlined, also in a loop over rows.
 template <const auto& columns, class Put>
 constexpr void for_each_column(Put&& put) {
     [&]<std::size_t... c>(std::index_sequence<c...>) {

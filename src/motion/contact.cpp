@@ -9,7 +9,7 @@ namespace dinal::motion::contact {
 namespace {
 
 constexpr double rounding = std::numeric_limits<double>::epsilon();
-/// The rounding that an angle accumulates in a long motion, of the torques.
+/// The rounding that an angle accumulates in a long motion, relative to the torques.
 constexpr double rounding_of_way = 1024 * rounding;
 
 }  // namespace

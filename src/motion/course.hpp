@@ -25,12 +25,13 @@ struct Work {
     double kept = 0;     ///< stored in the springs of sliders
 };
 
-/// A stretch of smooth motion, integrated as accurately as it was computed. Times are counted from its beginning.
+/// A smooth part of the motion whose work is integrated with the accuracy of the integrator. Times are counted from the
+/// start of the leg.
 class Leg {
 public:
     [[nodiscard]] virtual double length() const = 0;
     [[nodiscard]] virtual double since_start(double t) const = 0;
-    /// The work done from the beginning up to `since_start`, which is limited to the leg.
+    /// The work done from the start of the leg up to the time `since_start`, clamped to the leg.
     [[nodiscard]] virtual Work work(double since_start) const = 0;
 
 protected:
@@ -57,8 +58,8 @@ public:
     /// The time up to which the motion is stored completely, so that at() need not evaluate M and legs() covers it:
     /// `never` if all of it is. Integrators that only store checkpoints return -never.
     [[nodiscard]] virtual double whole_until() const { return -model::never; }
-    /// The ends of smooth pieces, in order; they include user actions and switches of conditions on the motion. Empty
-    /// if all are events or breaks of M.
+    /// The ends of smooth pieces, in order; besides events they include user actions and switches of conditions on the
+    /// motion. Empty if only events and breaks of M divide the motion.
     [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }
     /// Visits the legs in order, without gaps.
     virtual void legs(const std::function<void(const Leg&)>& /*visit*/) const {}

@@ -19,7 +19,7 @@ public:
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : Bounded(sign, f, slope, {}) {
         at_nodes_ = chebyshev::at_nodes(f_);
     }
-    /// The same with known values at the nodes.
+    /// The same with known values of f at the nodes.
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope, const Samples& at_nodes)
         : f_(f), slope_(slope), at_nodes_(at_nodes) {
         for (double& c : f_) c *= sign;
@@ -31,13 +31,13 @@ public:
     [[nodiscard]] double operator()(double x) const { return value(f_, x); }
     [[nodiscard]] double slope(double x) const { return value(slope_, x); }
     [[nodiscard]] double second_bound() const { return second_; }
-    /// A bound of how far the curve sags below its chord over this width.
+    /// An upper bound of how far the curve sags below its chord over this width.
     [[nodiscard]] double dip(double width) const { return second_ * width * width / 8; }
     /// Returns whether the curve between these two values, `width` apart, is positive.
     [[nodiscard]] bool stays_above(double a, double b, double width) const { return std::min(a, b) > dip(width); }
     /// The rounding error of a value.
     [[nodiscard]] double floor() const { return floor_; }
-    /// For a curve that is a difference of larger numbers, or whose slope is.
+    /// Raise the rounding error of values or slopes, for a curve that is a difference of larger numbers.
     void raise_floor(double least) { floor_ = std::max(floor_, least); }
     void raise_slope_floor(double least) { slope_floor_ = std::max(slope_floor_, least); }
     /// The lowest point around x if the curve touches zero within rounding without clearly crossing it.
@@ -63,16 +63,16 @@ public:
             const auto k2 = static_cast<double>(k * k);
             bend += (k % 2 == 0 ? f_[k] : -f_[k]) * (k2 * (k2 - 1) / 3);
         }
-        // A dip below zero that is not deeper than the rounding is none.
+        // A dip below zero that is no deeper than the rounding does not count.
         if (at_left < -slope_floor_ && !(at_left * at_left <= 2 * bend * floor_)) return 0;
         const double by_bend = bend > 0 ? 3 * bend / derivative_bound<3>(f_) : 0;
-        return by_slope > by_bend ? by_slope : by_bend;  // a NaN decides nothing
+        return by_slope > by_bend ? by_slope : by_bend;  // false for NaN
     }
 
-    /// The curve divided by 1 + x, if it is known to be zero at -1: what it has left are its other zeros. Its own
-    /// rounding is nearly that of a slope there, and more than that of the curve farther away.
+    /// The curve divided by 1 + x. Requires f(-1) = 0; its other zeros remain. The rounding error near -1 is about that
+    /// of a slope, farther away more than that of f.
     [[nodiscard]] Bounded divided() const {
-        constexpr double nearest = 32;  // so much greater is the rounding that values have after the division
+        constexpr double nearest = 32;  // factor by which the division enlarges the rounding of values
         Series<n> quotient{};
         for (std::size_t k = n - 1; k > 0; --k) {
             quotient[k - 1] = 2 * (f_[k] - quotient[k]) - (k + 1 < n ? quotient[k + 1] : 0);
@@ -98,7 +98,7 @@ private:
 namespace detail {
 
 /// The zero between f(a) > 0 and f(b) <= 0 of a falling curve: Newton within the bracket, until a step is below
-/// rounding. (Steps within the rounding of f would not end soon.)
+/// rounding.
 template <class F>
 double polish(const F& f, double a, double fa, double b, double fb) {
     constexpr double rounding = 2e-16;
@@ -142,9 +142,9 @@ std::optional<double> search(const F& f, double a, double fa, double b, double f
     return search(f, middle, fm, b, fb, confirm);
 }
 
-/// The place up to the next node at which f, which is known to be zero at -1, falls below zero; -1 if it does so at
-/// once. The known zero is divided out. If it is a double one, as where a motion only grazes, the quotient is zero
-/// there, too, within rounding: then f itself tells by its first value that is not.
+/// The first x in [-1, nodes[1]] at which f falls below zero if f(-1) = 0; -1 if it does so at once. The known zero is
+/// divided out. At a double zero (a grazing motion) the quotient is also zero to rounding; then the first value of f
+/// beyond rounding decides.
 template <class F, class Confirm>
 std::optional<double> behind_zero(const F& f, const Confirm& confirm) {
     const F divided = f.divided();
@@ -166,9 +166,9 @@ struct NoTouch {
 };
 
 /// The first x in [from, 1] at which f falls below zero. If f touches zero within rounding without clearly crossing it,
-/// confirm(x) decides whether that counts. If f(-1) is known to be `zero`, f should become positive; if it does not,
-/// the result is -1. A bound of f'' proves that no zero lies between two values; otherwise the interval is halved, so
-/// that pairs of close zeros are not missed.
+/// confirm(x) decides whether that counts. If f(-1) is known to be `zero`, f should rise from there; otherwise the
+/// result is -1. A bound of f'' proves that no zero lies between two values; otherwise the interval is halved, so that
+/// pairs of close zeros are not missed.
 template <class F, class Confirm = NoTouch>
 std::optional<double> first_below(const F& f, double from, bool zero = false, const Confirm& confirm = {}) {
     const Samples& at_node = f.at_nodes();

@@ -60,7 +60,7 @@ public:
     [[nodiscard]] auto begin() const { return column(0).begin(); }
     [[nodiscard]] auto end() const { return column(0).end(); }
 
-    /// For a new table only: rows of others must not change.
+    /// Pointer to the values of a new table. Must not be used on shared rows.
     [[nodiscard]] T* writable() { return store_ == nullptr ? nullptr : store_->values; }
 
     /// The first `kept` rows followed by those of `later`. New memory reserves room for at most as many rows again, up
@@ -82,7 +82,7 @@ public:
         return both;
     }
 
-    /// The first rows, in their own memory.
+    /// A copy of the first rows in memory of its own.
     [[nodiscard]] Growing first(std::size_t rows) const {
         assert(rows <= size_);
         Growing part(rows, columns());
@@ -90,7 +90,7 @@ public:
         return part;
     }
 
-    /// The memory of this table; 0 if others share it.
+    /// The bytes of this table; 0 if other tables share them.
     [[nodiscard]] std::size_t own_bytes() const {
         return store_.use_count() == 1 ? store_->room * store_->columns * sizeof(T) : 0;
     }
@@ -101,7 +101,7 @@ private:
         T* values;
         std::size_t room, columns;
         std::size_t used;       ///< rows claimed by any table
-        std::vector<T> list{};  // the owner in case of a list
+        std::vector<T> list{};  // owns `values` if they were given as a vector
 
         [[nodiscard]] T* column(std::size_t i) const { return values + i * room; }
         static std::shared_ptr<Store> with_room(std::size_t rows, std::size_t columns) {

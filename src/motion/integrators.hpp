@@ -27,7 +27,7 @@ using Integrator = std::variant<Spectral,  //
 
 /// The default integrator: exact if it applies, otherwise spectral, which supports everything.
 Integrator integrator_for(const model::Oscillator& system, const model::Drive& drive);
-/// The same as text: its Lua expression.
+/// The default integrator as its Lua expression.
 inline constexpr text::FixedText<64> usual_integrator{Exact::about.call.name, "{}"};
 inline constexpr text::FixedText<96> default_integrator{usual_integrator.c_str(), " if it supports M, otherwise ",
                                                         Spectral::about.call.name, "{}"};

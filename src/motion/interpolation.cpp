@@ -20,7 +20,7 @@ std::array<double, 3> monotone_ends(const Cubic& p) {
     double s1 = 1, s2 = 1;
     const double discriminant = b * b - 4 * a * c;
     if (discriminant > 0) {
-        // The stable formula: no difference of nearly equal numbers.
+        // The stable formula avoids the difference of nearly equal numbers.
         const double q = -(b + std::copysign(std::sqrt(discriminant), b)) / 2;
         s1 = a != 0 ? q / a : 1;
         s2 = q != 0 ? c / q : 1;

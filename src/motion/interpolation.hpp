@@ -37,8 +37,8 @@ private:
     double c3_, c4_, c5_;
 };
 
-/// A zero of the velocity, which a cubic has found, made more accurate by one secant step of the interpolant; and the
-/// acceleration there.
+/// Improves a zero of the velocity, found by a cubic, by one secant step on the quintic; `slope` is the acceleration
+/// there.
 struct TurnInStep {
     double x, slope;
 

@@ -10,8 +10,8 @@ namespace {
 
 /// More successive decisions than this count as chatter.
 constexpr int most_at_once = 200;
-/// A velocity that only shows a direction.
-constexpr double hair = std::numeric_limits<double>::min();
+/// A tiny velocity that only indicates a direction.
+constexpr double tiny_velocity = std::numeric_limits<double>::min();
 
 }  // namespace
 
@@ -55,13 +55,14 @@ bool LoneContact::for_good(const Moment& now) const {
 
 model::State LoneContact::on_side_of_motion(const model::State& y) const {
     const double way = model::sign_of(motion_);
-    return {y.theta, way * y.velocity > 0 ? y.velocity : way * hair};
+    return {y.theta, way * y.velocity > 0 ? y.velocity : way * tiny_velocity};
 }
 
 bool LoneContact::jumps(double t, double theta) const {
     if (!feedback_ || passes()) return false;
     constexpr double rounding = 1e-12;  // relative rounding of a user's formula
-    const double above = excitation_.value(t, {theta, hair}), below = excitation_.value(t, {theta, -hair});
+    const double above = excitation_.value(t, {theta, tiny_velocity}),
+                 below = excitation_.value(t, {theta, -tiny_velocity});
     const double torques = std::fabs(above) + std::fabs(below) + system_.greatest_holding();
     return std::fabs(above - below) > rounding * torques;
 }

@@ -1,4 +1,4 @@
-// The only contact of a mass on the ground, for exact and rk4: its state and its events. contact.hpp decides.
+// The state and events of the single contact of a mass on the ground, for exact and rk4. The rules are in contact.hpp.
 //
 // An integrator computes the smooth motion. It reports when the velocity reaches zero or a pull passes the limit of
 // sticking; this class says how the mass continues.
@@ -17,8 +17,8 @@ class LoneContact {
 public:
     enum class Phase {
         moving,   ///< velocity not zero, or zero is not special (see passes())
-        arrived,  ///< velocity zero, the law has not decided yet
-        leaving,  ///< velocity zero, the law released it
+        arrived,  ///< velocity zero, not yet decided
+        leaving,  ///< velocity zero, released by the friction law
         stuck,
         held,      ///< stuck within rounding of the limit: it was released, but did not start
         creeping,  ///< slower than rounding, yet sliding: friction balances M and the spring
@@ -33,29 +33,29 @@ public:
     LoneContact(const Problem& problem, std::vector<model::Event>* events, double at_once);
 
     [[nodiscard]] Phase phase() const { return phase_; }
-    /// Returns whether it stands, as far as doubles show.
+    /// Returns whether the mass is at rest to rounding.
     [[nodiscard]] bool stuck() const {
         return phase_ == Phase::stuck || phase_ == Phase::held || phase_ == Phase::creeping;
     }
-    /// The direction of motion or creep; `stuck` if it has not moved yet without dry friction.
+    /// The direction of motion or creep; `stuck` if there is no dry friction and the mass has not moved yet.
     [[nodiscard]] model::Motion motion() const { return motion_; }
     /// Returns whether there is no dry friction: the mass swings through zero, and only turned() records events.
     [[nodiscard]] bool passes() const { return !system_.dry(); }
-    /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass goes on, or reverses when it has
-    /// stopped.
+    /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass keeps its direction, or reverses when
+    /// it has stopped.
     [[nodiscard]] model::Motion pulled(double M, double theta) const {
         const model::Pull pull = pull_of(M, theta);
         return pull.beyond > 0 ? pull.towards : model::Motion::stuck;
     }
-    /// The limit of M - k theta towards this side: the breakaway torque, or for a creeping mass the balance it is in,
-    /// within rounding.
+    /// The limit of M - k theta towards this side: the breakaway torque, or for a creeping mass the sliding friction,
+    /// with a margin for rounding.
     [[nodiscard]] double limit(model::Motion side) const {
         if (phase_ != Phase::creeping) return system_.holding(side);
         return contact::limit_of_creep(side, motion_, balance(), apart_);
     }
     /// The excess of M over the limit; positive exactly if the law releases the mass.
     [[nodiscard]] double excess(double M, double theta) const { return pull_of(M, theta).beyond; }
-    /// Returns whether M can never move it again: it is constant, or never large enough.
+    /// Returns whether M can never move the mass again, because M is constant or never large enough.
     [[nodiscard]] bool for_good(const Moment& now) const;
     /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
     /// in the direction of motion.
@@ -69,7 +69,7 @@ public:
         return feedback_ ? excitation_.value(t, {theta, 0}) : M;
     }
 
-    /// The angle at which an arrived mass stands: theta, or if that exceeds the limit of sticking by no more than
+    /// The angle of a mass that has stopped: theta, or if that exceeds the limit of sticking by no more than
     /// accumulated rounding, the angle at the limit.
     [[nodiscard]] double place_at_stop(const Moment& now) const;
 
@@ -79,7 +79,7 @@ public:
     /// the spring while breakaway friction is larger: such a mass slows down for ever.
     bool creep(const Moment& now);
 
-    // These functions return false after endless decisions.
+    // The following functions return false after too many decisions in a row (chatter).
 
     /// Decides after arrive(), and records the event.
     bool decide(const Moment& now);
@@ -94,7 +94,7 @@ public:
     void set_direction(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: reverses, and records the turn.
     void turned(const Moment& now);
-    /// Ends the run; returns whether the mass stands.
+    /// Ends the run; returns whether the mass is at rest.
     bool finish();
     /// Ends a run of endless decisions: removes their events except the first.
     void forget_chatter();
@@ -142,7 +142,7 @@ private:
     Phase phase_ = Phase::moving;
     model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
     double M_stuck_ = 0;                         // and M then
-    double torques_before_;                      // sum of torques at the stop before
+    double torques_before_;                      // sum of torques at the last stop
     Moment crept_{};                             // when it began to creep
     double apart_ = 0;                           // tolerance of M around the balance of a creep
     bool began_stuck_ = false;

@@ -42,19 +42,20 @@ struct OwnRule {
 
 /// An embedded pair of explicit Runge-Kutta methods with dense output.
 struct Pair {
-    using Weights = std::array<double, 7>;  ///< of the slopes at the stages, by the step
+    using Weights = std::array<double, 7>;  ///< weights of the slopes of the stages
     struct Stage {
-        double at;  ///< the time as a part of the step
+        double at;  ///< time as a fraction of the step
         Weights sum;
     };
-    double power;                   ///< the estimated error grows like this power of the step
-    std::span<const Stage> stages;  ///< behind the one at the start; the last one is the end of the step
-    Weights error;                  ///< in the estimate
-    /// Within the step, at its part x, the motion is the cubic of both ends and x^2 (1 - x)^2 times the sum by these.
+    double power;                   ///< the estimated error is proportional to step^power
+    std::span<const Stage> stages;  ///< stages after the first; the last is the end of the step
+    Weights error;                  ///< weights of the error estimate
+    /// At the fraction x of the step, dense output is the cubic through both ends plus x^2 (1 - x)^2 times the slopes
+    /// with these weights.
     Weights bulge;
 };
 
-/// The division of a run into stretches by the general engine.
+/// How the general engine divides a run into stretches, smooth intervals of the motion.
 struct Cut {
     double tolerance = 1e-12;
     double longest = model::never;  ///< longest stretch, time units
@@ -87,7 +88,7 @@ public:
         : MethodView(std::visit([](const auto& method) { return MethodView(method); }, one)) {}
 
     [[nodiscard]] const MethodText& about() const { return common_->about; }
-    /// The Lua text that makes it again.
+    /// The Lua expression that constructs the method.
     [[nodiscard]] std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
     /// An error if an option is out of range, or wrong for this system or excitation.
     [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system,
@@ -101,8 +102,8 @@ public:
     [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
     /// Returns whether M is evaluated in order of time, so that a memory in M does no harm.
     [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
-    /// Its stretches if it runs any system with states, user events, belts, bases and controllers with a memory;
-    /// otherwise none.
+    /// The stretches of a method that runs any system with states, user events, belts, bases and controllers; otherwise
+    /// empty.
     [[nodiscard]] std::optional<Cut> cut() const { return common_->cut(method_); }
 
 private:

@@ -30,7 +30,7 @@ RowsToCome rows_to_come(const Run& so_far, const Grid& grid) {
     }
     rows.times.reserve(grid.count() - rows.kept);
     for (std::size_t i = rows.kept; i < grid.count(); ++i) {
-        // The old t_end may be a requested row and lie slightly behind it by rounding.
+        // The old t_end may be a requested row and differ from it by rounding.
         const double t = grid.time(i), stop = so_far.t_stop;
         if (t >= stop || std::fabs(t - stop) <= 4e-16 * std::fabs(stop)) rows.times.push_back(std::max(t, stop));
     }

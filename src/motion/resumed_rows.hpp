@@ -1,4 +1,4 @@
-// The rows of a continued run: those it has, and those it still needs.
+// The rows of a continued run: those that exist, and those still to be computed.
 #pragma once
 
 #include <vector>

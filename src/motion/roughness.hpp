@@ -6,27 +6,26 @@
 
 namespace dinal::motion {
 
-/// From three short stretches: the greatest and the second greatest of the last Chebyshev coefficients, and of the
-/// values.
+/// Taken from three short intervals: the greatest and the second greatest Chebyshev tail, and the greatest value.
 struct Roughness {
     double most = 0, usual = 0, size = 0;
 
-    /// A jump would be rough on one stretch only.
+    /// Returns whether at least two intervals are rough; a jump would make only one rough.
     [[nodiscard]] bool is_noise() const {
         constexpr double alike = 0.1;
         return usual > alike * most;
     }
 };
 
-/// The limit of noise as a part of the torques; steps of rougher functions are located instead.
+/// The limit of noise relative to the torques; rougher functions are treated as jumping.
 inline constexpr double most_noise = 1e-5;
-/// The same for an M that depends on the motion; it admits single precision.
+/// The limit for an M that depends on the motion; it admits single precision.
 inline constexpr double most_noise_of_motion = 1.2e-7;
 
-/// The length of a stretch as a part of the motion's time scale.
+/// The length of an interval as a fraction of the motion's time scale.
 inline constexpr double rough_stretch = 1e-3;
 
-/// Evaluates stretches of this length from each start. All zero if a value is not finite.
+/// Samples `function` on intervals of this length from each start. All zero if a value is not finite.
 [[nodiscard]] Roughness roughness(const std::function<double(double)>& function, const std::array<double, 3>& starts,
                                   double length);
 

@@ -36,7 +36,7 @@ public:
         ++next_;
         set_next();
     }
-    /// Consecutive rows of one motion, column by column.
+    /// Writes consecutive rows of one motion, column by column.
     void put_block(std::size_t count, const double* theta, const double* velocity, const double* M, double friction) {
         count = std::min(count, grid_.count() - next_);
         for_each_column<body_columns>([&](std::size_t c, auto value) {

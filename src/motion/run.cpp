@@ -141,7 +141,7 @@ std::string chatter_text(const Run& run) {
             "is too steep; a line over some small range of speeds would not",
             speed > next_to_none * fastest ? speed : 0.0);
     }
-    if (run.states > 0) {  // a jump in the rate of a state may be the cause, too
+    if (run.states > 0) {  // the cause may also be a jump in the rate of a state
         return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "
                "line or tanh in its place would not";
     }

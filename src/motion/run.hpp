@@ -62,12 +62,12 @@ namespace engine {
 struct Left;
 }
 
-/// What a system did, or, as a view, what one of its bodies or links did. The members from `initial` on are of that
-/// body or link; of several bodies they are of the first one, and without a course.
+/// The motion of a system or, as a view, of one of its bodies or links. The members from `initial` on belong to that
+/// body or link. For several bodies they belong to the first one, and there is no course.
 struct Run {
     std::vector<std::string> own_names = {};    ///< if they differ from the usual six: see names()
-    Rows rows;                                  ///< never NaN; accelerations may follow the columns that have names
-    Growing<model::Event> events;               ///< in order of time; those of the user once at each joint
+    Rows rows;                                  ///< never NaN; columns of accelerations may follow the named ones
+    Growing<model::Event> events;               ///< ordered by time; a user's event appears once for each joint
     std::vector<std::string> event_names = {};  ///< names of the user's events, by Event::user
     std::size_t states = 0;                     ///< the number of the run's own states, its last columns
     model::Outcome outcome = model::Outcome::reached_end;
@@ -75,21 +75,22 @@ struct Run {
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
     double t_start = 0;
     double t_stop = 0;  ///< the time reached: t_end unless the run ended early
-    double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its changes
-    double unproven = 0;    ///< the longest stretch in which formulas may do more than was sampled
+    double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its breaks
+    double unproven = 0;    ///< longest interval in which formulas could not be proven to do no more than sampled
     double noise = 0;       ///< torque by which M deviates from a smooth function on every scale
     std::size_t jumps = 0;  ///< located jumps of a function M along the motion
     bool located = false;   ///< whether formulas have conditions on the motion, which were located
     bool computed = true;   ///< whether it was simulated; otherwise read from a file
-    std::shared_ptr<const engine::Left> left = {};  ///< what the general loop leaves; null for other integrators
+    /// state of the general engine at the end; null for other integrators
+    std::shared_ptr<const engine::Left> left = {};
 
     model::State initial;  ///< at t_start
     model::State state_at_stop;
     model::Motion motion_at_stop = model::Motion::stuck;
     bool began_stuck = false;              ///< whether it was stuck until something moved it
     bool began_open = false;               ///< whether nothing pressed on the contact until it closed
-    bool on_belt = false;                  ///< whether turns of theta are no events, as on a belt
-    double restitution = 1;                ///< part of the speed left after an impact at a wall
+    bool on_belt = false;                  ///< whether turns of theta are not recorded as events, as on a belt
+    double restitution = 1;                ///< fraction of the speed kept at an impact on a wall
     std::shared_ptr<const Course> course;  ///< null if declined, or if the run was read from a file
 
     /// Returns whether the jumps dominate the duration of the computation.
@@ -98,7 +99,7 @@ struct Run {
         return jumps >= often;
     }
     [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
-    /// Its events, those of the user only once.
+    /// The events; a user's events only once.
     [[nodiscard]] Growing<model::Event> told_events() const;
     /// One name for each column of `rows` that users see.
     [[nodiscard]] const std::vector<std::string>& names() const {

@@ -259,7 +259,7 @@ text::Expected<Run> run_from(const Past& past, const model::Oscillator& system, 
     return run;
 }
 
-/// Returns whether the mass stood at the end, for ever or not.
+/// Returns whether the mass stood at the end, permanently or not.
 bool stands(model::Outcome outcome) {
     return outcome == model::Outcome::at_rest || outcome == model::Outcome::stuck_at_end;
 }
@@ -277,7 +277,7 @@ Growing<model::Event> joined(const Run& so_far, const Run& second) {
         later.assign(first.begin() + static_cast<std::ptrdiff_t>(stop) - 1, first.end());
         kept = stop - 1;
         later.front().kind = model::EventKind::stick;
-        if (crept) {  // it may still creep
+        if (crept) {  // the mass may still creep
             const bool still =
                 stands(second.outcome) && second.events.size() == 1 && second.events.front().t == so_far.t_stop;
             if (still) return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
@@ -288,7 +288,7 @@ Growing<model::Event> joined(const Run& so_far, const Run& second) {
     return first.followed_by(kept, Growing<model::Event>(std::move(later)), all_memory);
 }
 
-/// The second part appended to the first, of which `kept` rows remain.
+/// Appends the second part to the first `kept` rows of the first part.
 Run joined(const Run& first, std::size_t kept, Run second, const Limits& limits) {
     const std::size_t most = limits.memory / (column_count * sizeof(double));
     second.rows = Rows(first.rows.table().followed_by(kept, second.rows.table(), most));

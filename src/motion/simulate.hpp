@@ -33,11 +33,11 @@ class Grid {
 public:
     /// start, start + dt, ... and always end as the last row, exactly.
     static Grid every(double dt) { return Grid(true, dt, {}); }
-    /// These times, strictly increasing and within the window; may be empty.
+    /// Rows at these times, strictly increasing and within the window; may be empty.
     static Grid at(std::vector<double> times) { return Grid(false, 0, Growing<double>(std::move(times))); }
     static Grid none() { return Grid(false, 0, {}); }
 
-    /// For a list of times: the first `kept`, which are rows already, followed by `more`.
+    /// A list of times: the first `kept` of this grid, which are already rows, followed by `more`.
     [[nodiscard]] Grid followed_by(std::size_t kept, std::vector<double> more) const;
 
     /// Fails if dt is not positive, or times do not increase or leave the window.
@@ -94,7 +94,7 @@ struct Problem {
     std::optional<model::Motion> before = {};  ///< motion at the end of the run that is continued
     std::size_t course_bytes = 0;              ///< memory limit of the course
     bool more = false;                   ///< whether there are walls, controllers with a memory, or more drive than M
-    const engine::Left* left = nullptr;  ///< of the run that is continued
+    const engine::Left* left = nullptr;  ///< state at the end of the run that is continued
 };
 
 /// Runs from the drive's initial state at window.start. Fails before the first step if the window, the grid or the
@@ -103,13 +103,14 @@ text::Expected<Run> simulate(const model::Oscillator& system, const model::Drive
                              const Grid& rows, MethodView method, const Monitor& monitor = {},
                              const Limits& limits = {});
 
-/// The same for any system. If its bodies have names, the rows have all columns, and only its parts have a course.
+/// The same for any system. If its bodies have names, the rows have the columns of all bodies and links, and only the
+/// views of single parts have a course.
 text::Expected<Run> simulate(const model::System& system, const model::Drive& drive, const Window& window,
                              const Grid& rows, MethodView method, const Monitor& monitor = {},
                              const Limits& limits = {});
 
-/// Continues `so_far` from its end to t_end, as if it had not been interrupted. Returns the run of both, which
-/// shares the data of `so_far`. `rows` covers both parts; `so_far` has the first of them, and perhaps one more at its
+/// Continues `so_far` from its end to t_end, as if it had not been interrupted. Returns the joined run, which shares
+/// the data of `so_far`. `rows` covers both parts; `so_far` already has the first of them, and perhaps one more at its
 /// end. Fails like simulate().
 text::Expected<Run> resume(const model::Oscillator& system, const model::Drive& drive, const Run& so_far, double t_end,
                            const Grid& rows, MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
@@ -117,11 +118,11 @@ text::Expected<Run> resume(const model::Oscillator& system, const model::Drive& 
 text::Expected<Run> resume(const model::System& system, const model::Drive& drive, const Run& so_far, double t_end,
                            const Grid& rows, MethodView method, const Monitor& monitor = {}, const Limits& limits = {});
 
-/// The run of the general loop as its user sees it.
+/// Turns the run of the general engine into that of an unnamed body if the system is plain.
 Run completed(const model::System& system, const model::Drive& drive, Run run);
-/// A view: what one body or link sees of a run; without names it is the run itself.
+/// The run as one body or link sees it, as a view; the run itself for an unnamed body.
 Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint);
-/// The number of columns of its rows.
+/// The number of columns of a run's rows.
 std::size_t columns_of(const model::System& system, const model::Drive& drive);
 
 }  // namespace dinal::motion

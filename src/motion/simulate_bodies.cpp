@@ -1,4 +1,4 @@
-// Runs of any system: the general engine runs everything except one plain body.
+// Runs any system: the general engine runs everything except one plain body.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace dinal::motion {
 
 namespace {
 
-/// A function of the motion of bodies with names, asked as that of one body without a name.
+/// Passes theta and velocity of the only body to a function that expects the named bodies' motion as states.
 class OnlyBody final : public model::UserFunction {
 public:
     explicit OnlyBody(std::shared_ptr<model::UserFunction> function) : function_(std::move(function)) {}
@@ -31,7 +31,7 @@ public:
     bool may_go_on() override { return function_->may_go_on(); }
     void forget_failure() override { function_->forget_failure(); }
 
-    /// The drive with the functions of M asked so. Controllers stay: no such method takes them.
+    /// The drive with the functions of M wrapped. Controllers are not wrapped, as no such method supports them.
     [[nodiscard]] static model::Drive drive(model::Drive drive) {
         const auto asked = [](const std::shared_ptr<model::UserFunction>& function) {
             const bool controls = dynamic_cast<const model::Controller*>(function.get()) != nullptr;
@@ -45,8 +45,8 @@ private:
     std::shared_ptr<model::UserFunction> function_;
 };
 
-/// An error if the method does not support such systems, or suits not every mode of the bodies. Holding contacts slow
-/// no mode down, so they are left out.
+/// An error if the method does not support systems of bodies, or is unsuitable for one of their modes. Contacts that
+/// stick are ignored, because they only make modes faster.
 std::optional<text::Error> wrong_for_bodies(MethodView method, const model::System& system, const model::Drive& drive,
                                             const Window& window) {
     if (!method.cut()) {
@@ -60,7 +60,8 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
             return wrong_method(method, mode, load, window).has_value();
         });
     };
-    // Stretches resolve all that is slower than what they resolve. Steps may be too long for what is damped, too.
+    // Collocation resolves every mode slower than one that it resolves. Fixed steps may still be too long for a
+    // damped mode.
     const bool takes_steps = method.cut()->step > 0 || method.cut()->pair != nullptr;
     if (const auto fast = engine::no_slower_than_modes(system); !takes_steps && fast && resolves(*fast)) return {};
     for (const model::Oscillator& mode : engine::modes_of(system)) {
@@ -94,21 +95,21 @@ text::Expected<Run> run_of(const model::System& system, const model::Drive& driv
                         .keeps_torques = true});
 }
 
-/// What a joint is by itself, for a run that has kept its motion.
+/// The oscillator of a joint by itself, for a run that has kept its motion; otherwise empty.
 std::optional<model::Oscillator> oscillator_if_dense(const model::System& system, const Run& run, std::size_t joint) {
     if (!run.left->is_dense(run)) return {};
     auto made = model::oscillator_at(system, joint);
     return made ? std::optional(std::move(made).value()) : std::nullopt;
 }
 
-/// Returns whether the run is that of an oscillator: of a plain system, or by a method with a loop of its own for one.
+/// Returns whether the run is computed for an oscillator: a plain system, or a method with its own engine for one body.
 bool runs_alone(const model::System& system, const model::Drive& drive, MethodView method) {
     const auto cut = method.cut();
     const bool more = drive.has_more() || system.joints.front().walls || model::has_memory(drive.M());
     return system.is_plain() || (system.is_alone() && (!cut || (cut->step > 0 && !more)));
 }
 
-/// Makes a run of the only body of a system, as an oscillator without a name.
+/// Runs the only body of a system as an unnamed oscillator.
 template <class Make>
 text::Expected<Run> run_alone(const model::System& system, const model::Drive& drive, const Make& make) {
     const auto alone = model::oscillator_at(system, 0);

@@ -30,7 +30,7 @@ bool moved_by_others(const model::Drive& drive) {
     return !drive.belt().components().empty() || std::any_of(drive.events.begin(), drive.events.end(), acts);
 }
 
-/// Decides once more at the very end, as M may have jumped there after the integrator's last decision.
+/// Returns whether M keeps the mass stuck at the very end; M may have jumped after the integrator's last decision.
 bool stays(const Run& run, const model::Lowered& system, const std::optional<model::Walls>& walls, double M) {
     const double theta = run.state_at_stop.theta;
     const model::Motion way = model::motion_from_standstill(system, M, theta);
@@ -48,7 +48,7 @@ bool for_good(const Run& run, const model::Oscillator& oscillator, const model::
     if (const double constant = loads.constant_from(); constant <= run.t_stop) {
         return creeps ? constant < run.t_stop : stays(run, system, oscillator.walls(), loads.value(run.t_stop));
     }
-    if (creeps) return false;  // a creeping mass yields to every change of M
+    if (creeps) return false;  // any change of M moves a creeping mass
     if (model::cannot_break_away(system, loads.most(), run.state_at_stop.theta)) return true;
     const double period = loads.has_feedback() ? 0 : model::period_from(loads, since);
     return period > 0 && run.t_stop - since >= period;
@@ -87,7 +87,7 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
     std::vector<model::Event> turns;
     if (!run.course) return turns;
     const double longest = run.course->system().natural_period();
-    double moved_at = run.t_start, velocity = run.initial.velocity;  // the last time it was seen moving
+    double moved_at = run.t_start, velocity = run.initial.velocity;  // last time at which it was seen moving
     const auto look = [&](double to) {
         const auto now = run.at(to);
         if (!now || now->velocity == 0) return;
@@ -108,7 +108,7 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
         moved_at = to, velocity = now->velocity;
     };
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-        constexpr double most = 1e4;  // a body with prescribed motion may have any inertia, so no useful period
+        constexpr double most = 1e4;  // a body with prescribed motion has an arbitrary inertia, so no meaningful period
         const double width = times[i + 1] - times[i];
         const double steps = parts * std::ceil(std::clamp(width / longest, 1.0, most));
         const auto count = width > 0 ? static_cast<std::size_t>(steps) : 0;
@@ -126,7 +126,8 @@ double peak(const Run& run) {
     for (const model::Event& event : run.events) {
         greatest = std::max(greatest, std::fabs(event.theta));
         if (event.kind != model::EventKind::user || !run.course) continue;
-        if (const auto y = run.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));  // acts move it
+        // an action may have moved it
+        if (const auto y = run.at(event.t)) greatest = std::max(greatest, std::fabs(y->theta));
     }
     if (run.on_belt) {
         for (const model::Event& turn : turns_on_belt(run)) greatest = std::max(greatest, std::fabs(turn.theta));

@@ -7,14 +7,14 @@
 namespace dinal::motion {
 
 /// A mass stuck at the end is at rest if M can never move it again: M is constant from then on, nowhere large enough,
-/// or has completed a period without moving it. Sets the outcome and turns the last stop into a rest. Done here once,
-/// as integrators do not know the future of M.
+/// or has completed a period without moving it. Sets the outcome and turns the last stop into a rest. This is done once
+/// here, as integrators do not know the future of M.
 void settle(Run& run, const model::Oscillator& system, const model::Drive& drive);
 
-/// The extremes of theta on a belt, which are no events, from a search between events and rows.
+/// The turns of theta on a belt, which are not recorded as events. They are searched between events and rows.
 std::vector<model::Event> turns_on_belt(const Run& run);
 
-/// The greatest |theta| of the motion between the rows, too; rad.
+/// The greatest |theta| of the motion, also between the rows; rad.
 double peak(const Run& run);
 
 }  // namespace dinal::motion

@@ -15,7 +15,7 @@ namespace {
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 // At most three of a hundred evaluations are repeated: one in 64 routinely, and two in 160 because of jumps.
-constexpr std::uint64_t first_again = 12;  ///< the first evaluation after which one is repeated
+constexpr std::uint64_t first_again = 12;  ///< the number of evaluations after which repetition begins
 constexpr std::uint64_t questions_between = 64;
 constexpr std::uint64_t questions_a_jump = 160;
 /// A jump is a change this many times larger than usual.
@@ -40,7 +40,7 @@ void Witness::keep(std::size_t place, const Answer& answer, std::span<const doub
     for (std::size_t i = 0; i < count; ++i) states_[place * count + i] = i < states.size() ? states[i] : 0;
 }
 
-/// Keeps every fourth answer; the older, the fewer.
+/// Keeps every fourth answer; older answers are sparser.
 void Witness::keep_for_later(const Answer& answer, std::span<const double> states) {
     if (asked_ == 1) keep(first_place, answer, states);
     if (asked_ % 4 != 0) return;
@@ -49,7 +49,8 @@ void Witness::keep_for_later(const Answer& answer, std::span<const double> state
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
 
-/// Keeps an answer at a later time than all before, so that a long search about one time leaves those of other times.
+/// Keeps an answer that is later in time than all before, so that a long search near one time does not displace the
+/// answers of other times.
 void Witness::keep_milestone(const Answer& answer, std::span<const double> states) {
     latest_ = answer.t;
     if (ahead_++ % way_ != 0) return;
@@ -83,11 +84,11 @@ bool Witness::repeats_answer(std::size_t place) {
     return false;
 }
 
-/// Repeats an evaluation of varying age.
+/// Repeats an evaluation, each time of a different age.
 bool Witness::repeat_one() {
     next_ = asked_ + questions_between;
     for (std::size_t i = 0; i < asked_in_turn; ++i) {
-        constexpr std::size_t stride = 7;  // coprime to the number of these places, 45
+        constexpr std::size_t stride = 7;  // coprime to asked_in_turn = 45
         turn_ = (turn_ + stride) % asked_in_turn;
         if ((known_ >> turn_ & 1U) != 0) return repeats_answer(turn_);
     }
@@ -111,13 +112,13 @@ bool Witness::heard(const Answer& answer, std::span<const double> states) {
     if (answer.t > latest_) keep_milestone(answer, states);
     if (!jumped) return true;
     ++jumps_asked_;
-    // A relay in a closure no longer returns what it returned before it switched, and random numbers do not repeat.
+    // A relay in a closure no longer returns its value from before the switch, and random numbers do not repeat.
     return repeats_answer(before_jump_) && repeats_answer(last_);
 }
 
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
-    // The repetition comes first, so that what the function leaves behind for others is that of the latest call.
+    // The repetition comes first, so that side effects that others see are those of the latest call.
     if (testimony_->found || (asked_ >= next_ && !repeat_one())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
@@ -137,7 +138,8 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
     return 0;
 }
 
-/// All other functions have run, and may have changed what this one depends on.
+/// Repeats kept evaluations after all other functions have run, because those may have changed variables that this one
+/// reads.
 void Witness::repeat_kept() {
     if (asked_ < 2 || testimony_->found || !repeats_answer(first_place)) return;
     for (std::size_t place = first_milestone; place < asked_in_turn; ++place) {

@@ -64,7 +64,7 @@ private:
         double value = 0;
     };
     static constexpr std::size_t ages = 18;       ///< answers from 4, 8, 16 ... evaluations ago are kept
-    static constexpr std::size_t milestones = 8;  ///< answers at times all over the run are kept as well
+    static constexpr std::size_t milestones = 8;  ///< answers at times spread over the run are kept as well
     // The places: two for each age; the very first answer; milestones; the last one and the one before a jump, which
     // swap.
     static constexpr std::size_t first_place = 2 * ages, first_milestone = first_place + 1,
@@ -82,13 +82,14 @@ private:
     std::string name_;
     const char* argument_;
 
-    std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the next one after which one is repeated
+    std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the count at which the next repetition is due
     std::uint64_t jumps_asked_ = 0;       ///< jumps that caused two repetitions
     std::size_t turn_ = 0, last_ = asked_in_turn, before_jump_ = asked_in_turn + 1;
-    double latest_ = -model::never;      ///< latest time of an evaluation
-    std::uint64_t ahead_ = 0, way_ = 1;  ///< evaluations later than all before; their number between two milestones
-    double usual_ = 0;                   ///< moving average of the change between evaluations
-    std::uint64_t known_ = 0;            ///< one bit for each filled place
+    double latest_ = -model::never;  ///< latest time of an evaluation
+    /// number of evaluations later than all before; their number between two milestones
+    std::uint64_t ahead_ = 0, way_ = 1;
+    double usual_ = 0;         ///< moving average of the change between evaluations
+    std::uint64_t known_ = 0;  ///< bit mask of filled places
     std::array<Answer, places> answers_;
     std::vector<double> states_;  ///< states of each place
 };

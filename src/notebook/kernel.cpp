@@ -114,7 +114,7 @@ void answer(const Json& message) {
     while (!rest.empty()) {
         const ssize_t written = ::write(answers_descriptor, rest.data(), rest.size());
         if (written < 0 && errno != EINTR) {
-            return;  // nobody listens any more
+            return;  // the client has gone
         }
         rest.remove_prefix(written > 0 ? static_cast<std::size_t>(written) : 0);
     }
@@ -291,7 +291,7 @@ bool run_kernel(lua_State* L, int answers) {
         return false;
     }
     answers_descriptor = answers;
-    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // an endless loop must not outlive its notebook
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);  // terminates this process when the notebook's ends
     Requests requests;
     prompt::Session session(L);
     session.show_values = lua::guarded<show_values_as_json>;

@@ -100,9 +100,9 @@ void Pen::to(double x, double y) {
     if (down_ && std::fabs(x - last_x_) < dot_reach && std::fabs(y - last_y_) < dot_reach && last_x_ >= 0) {
         x_ = x;
         y_ = y;
-        return;  // the usual case for a million points
+        return;  // this is the usual case for a million points
     }
-    // Points this far away are almost in a fixed direction; beyond, clipping would be lost in rounding.
+    // A clamped point this far away has almost the same direction; without clamping, clipping would lose all digits.
     constexpr double far = 1e7;
     x = std::clamp(x, -far, far);
     y = std::clamp(y, -far, far);

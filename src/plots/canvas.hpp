@@ -38,8 +38,8 @@ public:
     };
     [[nodiscard]] const Cell& cell(int column, int row) const;
     [[nodiscard]] bool has_ink() const;  ///< whether a curve has dots here
-    /// The text of the cell. In ASCII `mark` replaces the dots of a curve (0: their shape is kept), `behind` the
-    /// others.
+    /// The text of the cell. In ASCII, `mark` replaces the dots of a curve (0 keeps their shape), `behind` those of the
+    /// background.
     [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;
 
 private:
@@ -52,7 +52,7 @@ private:
     std::vector<Cell> cells_;
 };
 
-/// The dot nearest to a place; for nan and far away places any dot outside.
+/// The dot nearest to a position; some dot outside of the canvas for nan and far positions.
 inline int nearest_dot(double place) {
     if (std::isnan(place)) return -1'000'000;
     return static_cast<int>(std::floor(std::clamp(place, -1e6, 1e6) + 0.5));
@@ -64,7 +64,7 @@ public:
     Pen(Canvas& canvas, std::uint8_t ink, int on = 1, int period = 1)
         : canvas_(canvas), ink_(ink), on_(on), period_(period) {}
 
-    /// In dots, not rounded; NaN lifts the pen. Clips lines to the canvas.
+    /// Draws a line to this point, in dots (not rounded); NaN lifts the pen. Lines are clipped to the canvas.
     void to(double x, double y);
 
 private:

@@ -47,7 +47,7 @@ struct Extents {
     Extent x, y;
 };
 
-/// The extents of visible points: a window in x determines the range of y.
+/// The extents of the visible points; limits of x select the points that determine the range of y.
 Extents extents_of(const Figure& figure) {
     const Interval window = figure.x.limits.value_or(Interval{-infinity, infinity});
     const bool x_log = figure.x.logarithmic, y_log = figure.y.logarithmic;
@@ -169,10 +169,10 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
 
 namespace {
 
-constexpr double closest_turns = 3;  // places from one turn to the next, at least
+constexpr double closest_turns = 3;  // minimum distance between extremes, in units of the width
 constexpr double turns_to_a_step = 4;
 
-/// The visible points, from first to last.
+/// The range of visible points of a curve, and the number of its extremes.
 struct Seen {
     std::size_t first = 0, last = 0, turns = 0;
 };
@@ -217,7 +217,7 @@ Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     return band;
 }
 
-/// The number of turns with large swings; noise on a slow curve has none.
+/// The number of extremes with large swings; noise on a slow curve does not count.
 std::size_t large_turns(const Curve& curve, const Seen& seen) {
     if (seen.last <= seen.first) return 0;
     const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
@@ -290,7 +290,7 @@ std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width
     for (Figure& figure : all) {
         for (Curve& curve : figure.curves) {
             if (!is_line_over_x(curve) || figure.x.logarithmic) continue;
-            constexpr double closest = 2.5;  // places from one turn to the next
+            constexpr double closest = 2.5;  // distance between extremes, in units of the width
             const Seen seen = seen_in(figure, curve);
             const std::size_t turns = large_turns(curve, seen);
             if (static_cast<double>(turns) * closest > width) {

@@ -44,7 +44,7 @@ struct Curve {
     Dashes dashes = Dashes::by_place;
     int colour = 0;                    ///< 1, 2, ... in the palette; 0: by position
     std::optional<Numbers> base = {};  ///< fills extend from y to this, by default to zero
-    bool behind = false;               ///< drawn first; a dense curve becomes a band
+    bool behind = false;               ///< whether it is drawn first; a dense curve becomes a band
     [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
 };
 
@@ -70,8 +70,8 @@ inline constexpr text::Option curve_options[] = {
 struct Axis {
     std::string label = {};
     std::optional<Interval> limits = {};
-    std::vector<double> ticks = {};       ///< their places; empty: round numbers
-    std::optional<double> division = {};  ///< or multiples of this (DIVX, DIVY of DRAAR)
+    std::vector<double> ticks = {};       ///< positions of the ticks; empty: round numbers
+    std::optional<double> division = {};  ///< distance of ticks at its multiples (DIVX, DIVY of DRAAR)
     bool logarithmic = false;
     bool names_curves = false;  ///< whether the label is a unit only, preceded by the curves' names on paper
 };
@@ -104,7 +104,7 @@ struct Figure {
     std::optional<Interval> dead_zone = {};  ///< interval of x, marked on y = 0
 };
 
-/// Larger numbers would overflow in differences.
+/// Returns whether the value can be drawn; larger numbers would overflow in differences.
 inline bool drawable(double value, bool logarithmic) {
     return std::fabs(value) <= 1e300 && (!logarithmic || value > 0);
 }
@@ -165,11 +165,12 @@ bool clip(Line& line, Box sheet, double slack);
 
 // Dense oscillations behind other curves are drawn as bands.
 
-/// Replaces curves marked `behind` by bands if they turn too often to be seen at this width, in resolvable places such
-/// as dots or pixels.
+/// Replaces curves marked `behind` by bands if their extremes are too close to be seen. `width` is in units of
+/// resolution, such as dots or pixels.
 std::vector<Figure> with_bands(std::span<const Figure> figures, double width);
 
-/// Replaces all curves by envelopes that turn in nearly every second place, as they would look like noise.
+/// Replaces curves with an extreme in nearly every second unit of `width` by envelopes, because they would look like
+/// noise.
 std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width);
 
 /// The indices of the curves, background curves first.

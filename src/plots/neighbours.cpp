@@ -7,7 +7,7 @@ namespace {
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-/// How well a row of bodies begins with this one: 2 if it is an end that drives, 1 if it is an end.
+/// Rates a body as the first of the row: 2 if it is an end that is never second in a link, 1 if it is an end.
 int merit(std::size_t body, std::span<const Pair> links) {
     const auto named = std::count_if(links.begin(), links.end(),
                                      [body](const Pair& link) { return link.first == body || link.second == body; });

@@ -8,8 +8,8 @@
 
 namespace dinal::plots {
 
-/// The bodies 0 to count - 1 in an order in which linked ones are neighbours. It begins with a body that links name
-/// first and no link names second, such as the motor of a drive: names in a Lua table have no order of their own.
+/// The bodies 0 to count - 1 in an order in which linked ones are neighbours. It begins with a body that is never
+/// second in a link, such as the motor of a drive, because Lua tables do not store the order of names.
 std::vector<std::size_t> neighbours(std::size_t count, std::span<const std::pair<std::size_t, std::size_t>> links);
 
 }  // namespace dinal::plots

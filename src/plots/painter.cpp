@@ -77,7 +77,7 @@ public:
         cairo_translate(context.get(), -corner_.x, -corner_.y);
         return context;
     }
-    /// The pixel at this place of the sheet, or nullptr outside.
+    /// The pixel at this position of the sheet, or nullptr outside.
     [[nodiscard]] std::uint32_t* at(Point place) {
         const double x = (place.x - corner_.x) * scale_, y = (place.y - corner_.y) * scale_;
         if (!(x >= 0 && y >= 0 && x < width && y < height)) return nullptr;
@@ -123,11 +123,12 @@ void outline(cairo_t* to, Shape shape, Point middle, double radius) {
     if (!shape.spokes) cairo_close_path(to);
 }
 
-constexpr double bar = 0.3 * em;           // height of the bars for dead zone and sticking
-constexpr double below_ticks = 0.45 * em;  // distance of the sticking bars from the axis
-constexpr double density = 0.25;           // opacity of an area's colour
-constexpr std::size_t crowd = 500;         // number of points whose shapes would hide each other
-constexpr double fineness = 2;             // pixels of an image for each pixel: lines are wider than two of them
+constexpr double bar = 0.3 * em;                   // height of the bars for dead zone and sticking
+constexpr double below_ticks = 0.45 * em;          // distance of the sticking bars from the axis
+constexpr double density = 0.25;                   // opacity of an area's colour
+constexpr std::size_t most_separate_points = 500;  // number of points whose shapes would hide each other
+// resolution of images, in pixels per pixel of the sheet; lines are wider than two of them
+constexpr double resolution = 2;
 
 enum class Align { left, centre, right };
 
@@ -223,7 +224,7 @@ private:
 
     [[nodiscard]] Image image() const {
         constexpr double most = 4e6;  // pixels
-        return {{panel_.left, panel_.top}, size_, std::min(fineness, std::sqrt(most / (size_.width * size_.height)))};
+        return {{panel_.left, panel_.top}, size_, std::min(resolution, std::sqrt(most / (size_.width * size_.height)))};
     }
 
     void add_grid() const {
@@ -261,7 +262,7 @@ private:
         return ((across % apart) + apart) % apart < wide ? stripe : nothing ? light : white;
     }
 
-    /// A map may have any number of places, so it is drawn as an image.
+    /// Draws the map as an image, because it may have any number of cells.
     void add_shades() const {
         const Shades& shades = *figure_.shades;
         const std::vector<ShadeBand> bands = bands_of(shades, most_paper_bands);
@@ -298,7 +299,7 @@ private:
 
     /// Draws curves; those with too many corners for an SVG become images.
     void add_curves() {
-        const Paper paper{panel_.view, {size_.width * fineness, size_.height * fineness}};
+        const Paper paper{panel_.view, {size_.width * resolution, size_.height * resolution}};
         std::vector<std::vector<std::size_t>> traces;
         double corners = 0;
         bool any = figure_.shades != nullptr || !figure_.marks.empty();
@@ -319,7 +320,9 @@ private:
         if (too_many && page_.go_on()) dense.put(page_.to);
     }
 
-    static bool is_crowd(const Curve& curve) { return curve.style == Style::points && curve.size() > crowd; }
+    static bool is_crowd(const Curve& curve) {
+        return curve.style == Style::points && curve.size() > most_separate_points;
+    }
 
     [[nodiscard]] std::uint32_t colour_of(std::size_t curve) const {
         const int own = figure_.curves[curve].colour;
@@ -358,7 +361,7 @@ private:
         }
     }
 
-    /// Draws all points; more points make a pixel darker.
+    /// Draws all points into an image in which several points make a pixel darker.
     void add_cloud(cairo_t* to, std::size_t i) const {
         const Curve& curve = figure_.curves[i];
         Image cloud = image();
@@ -413,14 +416,16 @@ private:
             (adds ? cairo_line_to : cairo_move_to)(to, point.x, point.y);
             if (last) length += std::hypot(point.x - last->x, point.y - last->y);
             last = point;
-            constexpr std::size_t batch = 20;  // corners of a dense line: cairo's time grows with the square
+            // number of corners per stroke, because cairo's time grows with the square
+            constexpr std::size_t batch = 20;
             if (dense == nullptr || ++waiting % batch != 0) continue;
             if (!page_.go_on()) return {};
             stroke(to, line_width, colour_of(i));
             cairo_move_to(to, point.x, point.y);
         }
         if (!dots.empty() && length >= line_width) dots.pop_back();
-        if (figure_.shades != nullptr && dense == nullptr) {  // a white edge, as in grey a map may hide any colour
+        // a white edge keeps the line visible on a map of any shade
+        if (figure_.shades != nullptr && dense == nullptr) {
             cairo_set_dash(to, nullptr, 0, 0);
             set_colour(to, 0xFFFFFF);
             cairo_set_line_width(to, line_width + 1.6);
@@ -439,7 +444,7 @@ private:
         cairo_set_dash(to, pattern.data(), static_cast<int>(pattern.size()), 0);
     }
 
-    /// Returns whether a line would change nothing, as most of a million overlapping lines.
+    /// Returns whether the line is already drawn, as are most of a million overlapping lines.
     static bool is_inked(Image& image, Point from, Point to, std::uint32_t colour) {
         const int steps = 1 + static_cast<int>(std::max(std::fabs(to.x - from.x), std::fabs(to.y - from.y)));
         for (int step = 0; step <= steps; ++step) {
@@ -524,7 +529,7 @@ private:
     }
 
     void add_hatched_sample(const LegendEntry& entry, double end) const {
-        Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, fineness);
+        Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, resolution);
         for (int row = 0; row < sample.height; ++row) {
             for (int column = 0; column < sample.width; ++column) {
                 sample.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(sample.width) +

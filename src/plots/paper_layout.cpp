@@ -118,7 +118,7 @@ int flow(std::vector<LegendEntry>& entries, double width) {
     return std::max(column_length, line + 1);
 }
 
-constexpr int most_ticks = 12;  // ticks of an axis; a poster needs no more than a page
+constexpr int most_ticks = 12;  // maximum number of ticks per axis, also on a large poster
 
 int x_tick_count(const PaperPanel& panel, double em_each) {
     return std::clamp(static_cast<int>((panel.right - panel.left) / (em_each * em)), 2, most_ticks);
@@ -213,7 +213,8 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     panel.legend = legend_of(figure);
     const double title = figure.title.empty() ? 0 : 1.5 * em;
     double above = 0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + title;
-    if (height - above < panel.bottom + 3 * em) {  // a sheet too small for both keeps curves rather than words
+    // on a sheet too small for both, the legend is dropped rather than the curves
+    if (height - above < panel.bottom + 3 * em) {
         panel.legend.clear();
         above = 0.5 * em + title;
     }
@@ -239,7 +240,8 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     }
     const double whole_width =
         2 * std::min((panel.left + panel.right) / 2 - left, left + width - (panel.left + panel.right) / 2);
-    // Titles side by side are on one line, whatever their legends need; a square box may be far below it.
+    // Titles of neighbouring panels are aligned regardless of their legends, except over a square box, which may be far
+    // below.
     const double title_above = figure.equal ? own_above : above;
     panel.title = {cut(figure.title, whole_width), (panel.left + panel.right) / 2, panel.top + title_above - 0.7 * em};
     panel.x_label.text = cut(with_offset(figure.x.label, panel.x_ticks), whole_width);

@@ -15,7 +15,8 @@ inline constexpr double font_size = 8;             // points
 inline constexpr double em = font_size * 96 / 72;  // pixels of 1/96 inch, the unit of this file
 inline constexpr double pixels_per_cm = 96 / 2.54;
 
-/// Centimetres. Zero: the width of a column of a paper (two panels: of its text), and the height that this needs.
+/// In centimetres. A width of 0 means the width of a column of a paper (for two panels, of its text), a height of 0 the
+/// required height.
 struct PaperSize {
     double width = 0;
     double height = 0;
@@ -35,7 +36,7 @@ constexpr double sample_width(Sample sample) {
 }
 inline constexpr double after_sample = 0.4 * em;
 
-/// The colour bar of a map: cells of equal height beside its box, the least below.
+/// The colour bar of a map: cells of equal height beside its box, lowest values at the bottom.
 struct ColourBar {
     double left = 0, right = 0;
     std::size_t cells = 0;

@@ -27,7 +27,7 @@ constexpr std::array<Symbol, 7> ratios{{{"velocity/omega0", "θ'/ω₀", Quantit
                                         {"damping_over_k", "damping/k", Quantity::angle},
                                         {"omega", "ω", Quantity::other}}};
 
-/// The symbol of a column, that of "load.velocity" without the body.
+/// The symbol of a column; the name of the body is ignored.
 Symbol symbol_of(std::string_view name) {
     const std::string_view inner = name.substr(name.rfind('.') + 1);
     if (const motion::ColumnKind* kind = motion::find_column_kind(inner)) {
@@ -122,7 +122,7 @@ std::vector<Interval> stuck_intervals(const motion::Run& run) {
     std::vector<Interval> intervals;
     for (const analysis::Stretch& stretch : analysis::stretches(run)) {
         if (stretch.stuck && stretch.begun_by && !intervals.empty() && intervals.back().high == stretch.from) {
-            intervals.back().high = stretch.to;  // it stuck before it came to rest
+            intervals.back().high = stretch.to;  // the mass stuck repeatedly before it came to rest
         } else if (stretch.stuck) {
             intervals.push_back({stretch.from, stretch.to});
         }
@@ -134,7 +134,7 @@ namespace {
 
 /// Impacts and relay switches on the curve of theta, without those too close to be distinguished.
 std::vector<Mark> marks_of_events(const motion::Run& run) {
-    constexpr double apart = 1.0 / 200;  // part of the run
+    constexpr double apart = 1.0 / 200;  // fraction of the duration of the run
     std::vector<Mark> marks;
     for (const auto& [event, kind] : {std::pair{model::EventKind::impact, MarkKind::impact},
                                       std::pair{model::EventKind::switched, MarkKind::switched},

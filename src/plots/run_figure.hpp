@@ -27,7 +27,7 @@ enum class Axes { one_a_unit, one };
 struct ColumnsToDraw {
     std::string x = {};                    ///< default t
     std::vector<std::string> ys = {};      ///< default theta, and M/k with an excitation
-    std::vector<std::string> labels = {};  ///< replace the names of the first of these
+    std::vector<std::string> labels = {};  ///< labels for the first of these instead of their names
     Axes axes = Axes::one_a_unit;
 };
 

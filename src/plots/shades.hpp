@@ -48,7 +48,7 @@ Curve contour(const Shades& shades, double level);
 
 /// From dark 0x440154 to bright 0xFDE725; legible for the colour-blind and in greyscale.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);
-/// The same for a fraction, 0 to 1, by interpolation.
+/// The colour for a fraction from 0 to 1, by interpolation.
 std::uint32_t flowing_colour(double part);
 /// The character of a band: its digit if all are digits, otherwise a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);

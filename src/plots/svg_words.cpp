@@ -19,7 +19,7 @@ std::string name_of(const std::string& label) {
 }
 
 std::string names_of_curves(const Figure& figure) {
-    constexpr std::size_t most = 3;  // more curves are described by their axis
+    constexpr std::size_t most = 3;  // more curves are described by the label of the axis only
     std::string names;
     std::size_t count = 0;
     for (const Curve& curve : figure.curves) {
@@ -81,7 +81,7 @@ std::string course_over_x(const std::vector<Point>& points) {
         std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
     const double from = points.front().y, to = points.back().y;
     if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
-    constexpr double visible = 0.01;  // part of the height
+    constexpr double visible = 0.01;  // fraction of the height
     const std::vector<Point> turns = turns_of(points, visible * (high->y - low->y));
     if (turns.size() == 2) return fmt::format("{} from {:.4g} to {:.4g}", to > from ? "rises" : "falls", from, to);
     return fmt::format("from {:.4g} to {:.4g}, greatest {:.4g} at {:.4g}, least {:.4g} at {:.4g}{}", from, to, high->y,

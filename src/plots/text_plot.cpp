@@ -50,7 +50,7 @@ bool uses_letters(const Figure& figure) {
     return figure.curves.size() > 1;
 }
 
-/// Returns whether letters are right of the canvas, at the ends of a few curves; many have them on the way.
+/// Returns whether letters are placed at the right ends of the curves; with many curves they are placed along these.
 bool letters_at_ends(const Figure& figure) {
     return uses_letters(figure) && figure.curves.size() <= 4;
 }
@@ -148,7 +148,7 @@ void draw_fill(Canvas& canvas, const Curve& curve, const Projection& projection,
 void draw_circle(Canvas& canvas, const Projection& projection, double radius) {
     const double size = radius / projection.view.x.range().length() * (projection.box.width - 1);
     constexpr double gap = 4;     // dots between circles
-    constexpr double most = 1e4;  // a window far from the origin sees only pieces of a line
+    constexpr double most = 1e4;  // if the window is far from the origin, only an arc is visible
     const int count = static_cast<int>(std::min(2 * std::numbers::pi * size / gap, most));
     for (int i = 0; i < count; ++i) {
         const double angle = 2 * std::numbers::pi * i / count;
@@ -180,7 +180,7 @@ void draw_background(Canvas& canvas, const Figure& figure, const Projection& pro
     }
 }
 
-/// Drawn only where no curve is, so as to hide none.
+/// Draws the dead zone where no curve is.
 void draw_dead_zone(Canvas& canvas, Interval zone, const Projection& projection, std::string_view sign) {
     const int row = nearest_dot(projection.y(0));
     const double from = std::max(projection.x(zone.low), 0.0);
@@ -190,7 +190,8 @@ void draw_dead_zone(Canvas& canvas, Interval zone, const Projection& projection,
     }
 }
 
-/// Each letter is further along its curve than the one before, so that they are apart even if the curves are not.
+/// Places one letter on each curve, each farther along than the previous one, so that letters are apart even if curves
+/// are not.
 void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projection) {
     for (std::size_t i = 0; i < figure.curves.size(); ++i) {
         const Curve& curve = figure.curves[i];
@@ -206,7 +207,7 @@ void draw_letters(Canvas& canvas, const Figure& figure, const Projection& projec
     }
 }
 
-/// A character for the value at the middle of each cell, except on curves.
+/// Draws a character for the value at the middle of each cell, except on curves.
 void draw_shades(Canvas& canvas, const Shades& shades, const Projection& projection, Charset charset) {
     const std::vector<ShadeBand> bands = bands_of(shades, most_text_bands);
     const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
@@ -239,7 +240,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     if (figure.axes) {
         draw_background(canvas, figure, projection, circles);
     }
-    // The first in a cell wins, so background curves come last.
+    // The first curve drawn in a cell wins, so background curves come last.
     std::vector<std::size_t> order = drawing_order(figure);
     const auto front =
         std::find_if(order.begin(), order.end(), [&](std::size_t i) { return !figure.curves[i].behind; });
@@ -627,7 +628,8 @@ private:
             const std::size_t middle = label_width_ + 2 + column;
             const std::size_t start = middle - std::min(middle, text.size() / 2);
             const bool fits = start + text.size() <= static_cast<std::size_t>(format_.columns);
-            if (fits && (numbers.width() == 0 || start > numbers.width())) {  // otherwise it would touch its neighbour
+            // otherwise the label would touch its neighbour
+            if (fits && (numbers.width() == 0 || start > numbers.width())) {
                 numbers.pad(start);
                 numbers.add(text);
             }
@@ -674,8 +676,8 @@ private:
 
     const Figure& figure_;
     const TextFormat& format_;
-    const View seen_;  // the figure's
-    View view_;        // on the canvas
+    const View seen_;  // view of the figure
+    View view_;        // view on the canvas
     BoxSigns frame_;
     Ticks x_ticks_, y_ticks_;
     TextBlock head_;

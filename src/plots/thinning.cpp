@@ -30,8 +30,8 @@ private:
     const Paper& paper_;
 };
 
-/// Drops points on straight parts, within the tolerance: straight lines from a corner reach a point in a range of
-/// directions, which narrows with each further point.
+/// Drops points on straight parts, within the tolerance. From a corner, each point permits a range of directions of a
+/// straight line; their intersection narrows with each point.
 class Corners {
 public:
     Corners(std::vector<std::size_t>& kept, double tolerance) : kept_(kept), tolerance_(tolerance) {}

@@ -80,7 +80,7 @@ std::string scientific(double value, int digits) {
     return fmt::format("{}e{}", head, std::stoi(text.substr(e + 1)));
 }
 
-/// All with the number of decimals that the finest gap needs.
+/// The numbers with a fixed number of decimals.
 std::vector<std::string> fixed(const std::vector<double>& at, int decimals) {
     std::vector<std::string> text;
     text.reserve(at.size());
@@ -99,8 +99,8 @@ std::vector<std::string> in_powers(const std::vector<double>& at, int finest) {
     return text;
 }
 
-/// The exponent of the last digit needed for all numbers, which may have no common step if a user chose them. At most
-/// four digits of the axis's length: pi/2 is 1.5708 on an axis of 5.
+/// The exponent of the last digit needed to show all numbers, which a user may have chosen arbitrarily. Limited to four
+/// digits of the axis's length, so pi/2 is 1.5708 on an axis of length 5.
 int finest_digit(const std::vector<double>& at, double length) {
     const int least = exponent_of(length) - 4;
     for (int digit = exponent_of(length) + 1; digit > least; --digit) {
@@ -164,7 +164,7 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
     } else if (scale.logarithmic()) {
         ticks.at = powers_of_ten(range, most);
     } else {
-        // A single tick shows no scale.
+        // A single tick does not show the scale.
         double least = range.length() / std::max(most, 1);
         do {
             ticks.at = multiples(round_step(least), range);

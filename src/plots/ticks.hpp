@@ -15,7 +15,7 @@ struct Ticks {
     std::string offset;
 };
 
-/// The axis's own ticks, otherwise round ones (1, 2 or 5 times a power of ten) at no more than `most` + 1 places.
+/// The axis's own ticks, otherwise at most `most` + 1 round numbers (multiples of 1, 2 or 5 times a power of ten).
 Ticks ticks_of(const Axis& axis, const Scale& scale, int most);
 
 /// The radii of a figure's circles, through the ticks of the axis with more ticks.

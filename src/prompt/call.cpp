@@ -177,7 +177,7 @@ int call(lua_State* L, int arguments, int results) {
         lua::settle_refusal();
     }
     lua_remove(L, function);
-    if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // also if a pcall came last
+    if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // even if a pcall has swallowed the error
         lua_settop(L, function - 1);
         lua_pushlstring(L, limit.data(), limit.size());
         return LUA_ERRRUN;
@@ -192,7 +192,7 @@ int call(lua_State* L, int arguments, int results) {
 std::string load_error_text(lua_State* L, const char* file) {
     const lua::Remarks remarks = errors::remarks_on_syntax(L, -1, file);
     std::string text = take_text(L);
-    // Lua's words suit except for bytecode, which Lua's own program would refuse as well.
+    // Lua's messages are suitable except those about bytecode, which Lua's own program would refuse as well.
     if (text == "not enough memory" && lua::memory_limit() > 0) {
         return lua::limit_sentence(lua::Stop::memory, "");
     }

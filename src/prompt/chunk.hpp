@@ -26,7 +26,7 @@ inline constexpr const char* prompt_chunk = "=input";
 
 Chunk compile(lua_State* L, const std::string& text);
 
-/// Returns whether it only reads a variable, so that ans is kept.
+/// Returns whether the chunk only reads a variable, so that ans is kept.
 bool only_reads_variable(const Chunk& chunk);
 
 // Running a chunk and showing its values.

@@ -352,7 +352,7 @@ Completion complete_command(lua_State* L, std::string_view before) {
 
 namespace {
 
-/// The help on an expression of ours; pushes nothing.
+/// The help on an expression whose meaning is known; pushes nothing.
 std::string entry(const Meaning& meaning, const terminal::Display& screen) {
     if (meaning.kind == Meaning::Kind::member && meaning.section != nullptr) {
         return help::member_text(*meaning.section, *meaning.member, screen);

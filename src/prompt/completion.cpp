@@ -91,7 +91,7 @@ std::vector<std::string> members(lua_State* L, const TypedText& typed, bool call
     return names;
 }
 
-/// The documentation of our function in an open call, or nullptr.
+/// The documentation of dinal's function in an open call, or nullptr.
 const lua::Doc* called_doc(lua_State* L, const OpenCall& call) {
     const int top = lua_gettop(L);
     const Meaning function = meaning(L, call.function);
@@ -142,7 +142,7 @@ std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
     return names;
 }
 
-/// Our functions that make an object of the class.
+/// dinal's functions that construct an object of the class.
 std::vector<std::string> constructors(std::string_view name) {
     std::vector<std::string> calls;
     for (const help::Section& section : help::sections()) {
@@ -179,7 +179,7 @@ std::vector<std::string> option_values(lua_State* L, const OpenCall& call, std::
     return values;
 }
 
-/// Returns whether a string at this place may be a file name: of our functions, if their documentation says so.
+/// Returns whether a string at this position may be a file name. For dinal's functions their documentation decides.
 bool takes_file(lua_State* L, const OpenCall& call) {
     const lua::Doc* doc = called_doc(L, call);
     if (doc == nullptr) {

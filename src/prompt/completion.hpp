@@ -34,9 +34,9 @@ enum class Cursor { name, member, option, value, string, nothing };
 struct OpenCall {
     std::span<const lua::Token> function;       ///< tokens before the bracket: sys : simulate
     bool options = false;                       ///< whether the cursor is in a table of options,
-    help::Braces braces = help::Braces::alone;  ///< passed in this way
-    /// The names from the call's options to the table with the cursor, "" in a list: events, "" in f{ events = { { ...
-    /// } } }.
+    help::Braces braces = help::Braces::alone;  ///< how this table is passed
+    /// The path of names from the call's options to the table that contains the cursor, with "" for a list: `events`,
+    /// "" in f{ events = { { ... } } }.
     std::vector<std::string_view> path = {};
     std::vector<std::string_view> given = {};  ///< options already given
     std::string_view option = {};              ///< the option whose value contains the cursor
@@ -78,9 +78,9 @@ private:
 struct Meaning {
     enum class Kind {
         unknown,
-        value,   ///< not an object of ours
-        object,  ///< an object of the class `section`, now or when it runs
-        member,  ///< the method or field `member` of `section`, or a function of ours
+        value,   ///< not an object of dinal
+        object,  ///< an object of the class `section`, at present or as the result of running the expression
+        member,  ///< the method or field `member` of `section`, or a function of dinal
     };
     Kind kind = Kind::unknown;
     const help::Section* section = nullptr;
@@ -99,7 +99,7 @@ void add_own_names(lua_State* L, std::vector<std::string>& names);
 /// The columns of the object in a method call such as run:plot: vectors of a run, columns of data.
 std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function);
 
-// While a line is typed: the grey hint behind it, and completion without Lua errors.
+// While a line is typed: the grey hint after it, and completion without Lua errors.
 
 /// The output that draws the hint behind a line and restores the cursor.
 struct Painted {
@@ -107,7 +107,7 @@ struct Painted {
     bool hint = false;  ///< whether a hint is visible now
 };
 
-/// A line behind the prompt on the row of the cursor.
+/// The line being typed, after the prompt.
 struct LineOnScreen {
     std::string_view prompt;
     const std::string& pending;  ///< previous lines of the chunk

@@ -18,7 +18,7 @@ std::string add_to_history(const std::string& entry, const std::string& file);
 /// The continuation of the last input that begins with this line; "" without one.
 std::string suggested(std::string_view line);
 
-/// While it lives, the up arrow first visits these lines of an unfinished chunk.
+/// While this object lives, the up arrow first visits these lines of an unfinished chunk.
 class LinesAbove {
 public:
     explicit LinesAbove(std::string_view lines);

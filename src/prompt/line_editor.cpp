@@ -130,9 +130,9 @@ void bind_to_suggestions() {
 /// Draws the line, and a hint behind it if it is one simple row.
 void redisplay() {
     if (InterruptNote::interrupted()) {
-        return;  // a line given up stays as it is
+        return;  // an abandoned line stays as it is
     }
-    erase_hint();  // before the cursor moves: it is at the hint's beginning
+    erase_hint();  // before the cursor moves, as it is at the beginning of the hint
     rl_redisplay();
     constexpr unsigned long other_uses = RL_STATE_ISEARCH | RL_STATE_NSEARCH | RL_STATE_SEARCH | RL_STATE_NUMERICARG |
                                          RL_STATE_COMPLETING | RL_STATE_VIMOTION;
@@ -199,7 +199,7 @@ extern "C" void on_resize(int) {
 /// readline divides by a third of the width when it scrolls sideways.
 constexpr int least_columns = 3;
 
-/// NOTE: readline leaves the old line if somebody else draws, so nothing else is drawn meanwhile.
+/// NOTE: readline does not redraw its old line if other code draws, so nothing else is drawn meanwhile.
 void fit_to_window() {
     if (terminal::display_of(STDOUT_FILENO).columns < least_columns) return;
     erase_hint();
@@ -221,7 +221,7 @@ void notice(int signal, void (*handler)(int)) {
     struct sigaction action {};
     action.sa_handler = handler;
     sigemptyset(&action.sa_mask);
-    action.sa_flags = SA_RESTART;  // the script must not notice it
+    action.sa_flags = SA_RESTART;  // scripts must not notice the signal
     sigaction(signal, &action, nullptr);
 }
 
@@ -317,7 +317,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
     editing.prompt = prompt;
     editing.pending = pending.empty() ? "" : pending + "\n";
     editing.cue = cue;
-    rl_eof_found = 0;  // left from an earlier line, it would end each further line
+    rl_eof_found = 0;  // a flag from an earlier line would end every further line
     rl_callback_handler_install(prompt.c_str(), accept);
     if (const char key = terminal::key_left_over(); key != '\0') {
         rl_stuff_char(static_cast<unsigned char>(key));
@@ -327,7 +327,7 @@ TypedLine read_edited(const std::string& prompt, const std::string& pending, con
         if (key_arrived()) {
             rl_callback_read_char();
         }
-        if (InterruptNote::interrupted()) {  // also if the line was just accepted: it has not run yet
+        if (InterruptNote::interrupted()) {  // also if the line was just accepted, because it has not run yet
             give_up();
             return {Reading::interrupted, ""};
         }

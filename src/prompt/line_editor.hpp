@@ -14,7 +14,7 @@ public:
     /// Uses the state for completion and signatures.
     explicit LineEditor(lua_State* L);
 
-    /// `pending`: previous lines of an unfinished chunk; `cue`: its missing part, shown in grey.
+    /// Reads a line. `pending` are the previous lines of an unfinished chunk, `cue` is its missing part, shown in grey.
     [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "",
                                  const std::string& cue = "") const;
 

@@ -124,16 +124,16 @@ struct Ending {
 };
 
 Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
-    constexpr int looks_a_second = 500, looks_between_sizes = 50;
+    constexpr int checks_a_second = 500, checks_between_sizes = 50;
     const auto latest = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
     int status = 0;
     Ending ending;
-    for (int look = 1; !ending.status && !ending.filled && std::chrono::steady_clock::now() < latest; ++look) {
+    for (int check = 1; !ending.status && !ending.filled && std::chrono::steady_clock::now() < latest; ++check) {
         if (::waitpid(child, &status, WNOHANG) == child) {
             ending.status = status;
         } else {
-            std::this_thread::sleep_for(std::chrono::seconds(1) / looks_a_second);
-            ending.filled = look % looks_between_sizes == 0 && size_of_files(desk) > largest_desk;
+            std::this_thread::sleep_for(std::chrono::seconds(1) / checks_a_second);
+            ending.filled = check % checks_between_sizes == 0 && size_of_files(desk) > largest_desk;
         }
     }
     ::kill(-child, SIGKILL);  // with all processes it has started
@@ -164,7 +164,7 @@ std::optional<std::string> fault_of(const Ending& ending, const std::string& des
 
 // ---- reading the marks
 
-/// The words of a line of --lab-marks after the script's name, which has no quotes here: number, question, verdict,
+/// The words of a line of --lab-marks after the script's name, which contains no quotes: number, question, verdict,
 /// tries, value, hint.
 std::vector<std::string> words_of(std::string_view line) {
     std::vector<std::string> words;
@@ -243,14 +243,13 @@ std::set<std::string> sheets_of(const HandIn& hand_in) {
     return sheets;
 }
 
-/// The parts of a script that tell a copy.
+/// The parts of a script by which copies are recognised.
 struct Essence {
     std::string code;                     ///< without comments, blanks, number, author and prose
-    std::vector<std::string> paragraphs;  ///< of prose: their words, without signs and capitals
+    std::vector<std::string> paragraphs;  ///< paragraphs of prose, as words without punctuation and capitals
 };
 
-/// Adds the paragraphs of a string that have enough words to tell who wrote them, and are not a question of the
-/// handout.
+/// Adds the paragraphs of a string that have enough words to be recognised and are not a question of the handout.
 void add_paragraphs(std::string_view text, std::vector<std::string>& paragraphs) {
     constexpr std::ptrdiff_t fewest_words = 8;
     while (!text.empty()) {
@@ -299,7 +298,7 @@ void compare_texts(std::vector<HandIn>& all) {
     }
 }
 
-/// Reports repeated sheets of one student; several sheets of a student are fine.
+/// Reports sheets that one student has handed in twice.
 void compare_sheets(std::vector<HandIn>& all) {
     std::map<std::string, const HandIn*> first;  // by number and sheet
     for (HandIn& hand_in : all) {
@@ -316,7 +315,7 @@ void compare_sheets(std::vector<HandIn>& all) {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// "+" right at once, a number: right after so many tries, "-" wrong, "." not tried, "" on another sheet.
+/// "+": right at once; a number: right after this number of tries; "-": wrong; ".": not tried; "": on another sheet.
 std::string sign_of(const HandIn& hand_in, const std::string& question) {
     const auto answers = hand_in.answers.find(hand_in.number);
     if (answers == hand_in.answers.end()) return "";
@@ -402,7 +401,7 @@ std::string csv_of(const Rows& rows) {
     std::string text;
     for (const auto& row : rows) {
         for (std::size_t i = 0; i < row.size(); ++i) {
-            // Spreadsheets take such a text for a formula, and hand-ins choose their names.
+            // Spreadsheets interpret such a text as a formula, and students choose the names of hand-ins.
             const bool formula =
                 row[i].size() > 1 && std::string_view("=+-@").find(row[i][0]) != std::string_view::npos;
             std::string field = (formula ? "'" : "") + row[i];
@@ -523,7 +522,8 @@ int mark(const Arguments& arguments) {
     return exit_code::ok;
 }
 
-// NOTE: the file is the built-in text itself. Its owner can read the answers there anyway, and nobody else can make it.
+// NOTE: the instructor's file is the built-in text itself. Its owner can read the answers in it anyway, and nobody else
+// can create it.
 text::Expected<std::string> solutions_of(const std::string& student) {
     const std::string file = lab_course_file();
     const auto text = files::read_file(file);

@@ -180,7 +180,7 @@ std::string nil_notice(lua_State* L, const std::string& text) {
     const std::vector<lua::Token> all = lua::tokens(text);
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (all[i].is("function")) {
-            break;  // its use may come later
+            break;  // a function may use the variable later
         }
         const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == lua::TokenKind::name;
         const bool alone = i + 1 == all.size() || all[i + 1].is(",") || all[i + 1].is("}") || all[i + 1].is(";") ||
@@ -266,7 +266,7 @@ std::string nil_option_now(lua_State* L) {
     thread_local std::set<std::pair<const void*, int>> seen;  // workers of a sweep use it, too
     lua_Debug frame{};
     if (lua_getstack(L, 1, &frame) == 0 || lua_getinfo(L, "Sl", &frame) == 0 || *frame.source != '@') return "";
-    // A function on one line ends before its statement, where other variables are visible.
+    // A function on one line ends before its statement, which can see other variables.
     if (frame.linedefined == frame.currentline || !seen.emplace(frame.source, frame.currentline).second) return "";
     const auto source = errors::source_of_frame(L, frame);
     if (!source) return "";

@@ -1,4 +1,4 @@
-// Notices on input that is valid but probably not intended.
+// Notices on input that is valid but probably not intended. Each function returns the notice, or "".
 #pragma once
 
 #include <string>
@@ -14,14 +14,14 @@ std::string name_notice(lua_State* L, const Chunk& chunk);
 /// For an expression that is nil because an element or field does not exist: run.theta[0], run.events[1].theat.
 std::string element_notice(lua_State* L, const Chunk& chunk);
 
-/// For a line that is hardly meant to continue: "run:events" waits for arguments that a field never has, and that a
-/// method may not need; "5%".
+/// For an incomplete line that is probably not meant to continue: "run:events" waits for arguments that a field never
+/// has, and that a method may not need; "5%".
 std::string unfinished_notice(lua_State* L, const std::string& text);
 
 /// For a local variable at the top level without further use: it is lost.
 std::string local_notice(const std::string& text);
 
-/// For an option or variable set to an unknown global, integrator = rk4: nil in Lua, but hardly meant.
+/// For an option or variable set to an unknown global, integrator = rk4: nil in Lua, but probably not intended.
 std::string nil_notice(lua_State* L, const std::string& text);
 
 /// For "x = 1,5".

@@ -8,14 +8,14 @@ namespace dinal::prompt {
 
 /// Write errors are checked once, at the end of the program (main.cpp).
 void say(std::string_view text);
-/// The same for text from outside, such as names in a file; removes control sequences on a terminal.
+/// Like say(), for text from outside, such as names in a file: removes control sequences on a terminal.
 void say_value(std::string_view text);
 void flush_output();
 
 /// Prints a line on standard error, after earlier output.
 void say_error(std::string_view text);
 
-/// While it lives, the lines of say_error() are appended to this text.
+/// While this object lives, the lines of say_error() are appended to this text.
 class ErrorsInto {
 public:
     explicit ErrorsInto(std::string& text);

@@ -20,13 +20,13 @@ struct TypedLine {
     std::string text;  ///< without its newline; a pasted block has newlines inside
 };
 
-/// The text behind a copied prompt of this or another program: "> x", ">> x", "dinal> x", "In [1]: x". None without a
+/// The text after a copied prompt of this or another program: "> x", ">> x", "dinal> x", "In [1]: x". None without a
 /// prompt.
 std::optional<std::string_view> behind_prompt(std::string_view line);
 
 TypedLine read_plain(const std::string& prompt);
 
-/// While it lives, Ctrl-C only affects the line being typed. Only one may exist.
+/// While this object lives, Ctrl-C only affects the line being typed. Only one may exist.
 class InterruptNote {
 public:
     InterruptNote();

@@ -29,7 +29,7 @@ enum class Place { alone, inside };
 
 constexpr std::size_t longest_string = 1000;
 constexpr std::size_t longest_inner_string = 60;
-constexpr std::size_t longest_text = 4000;  // a longer text of several lines is quoted
+constexpr std::size_t longest_text = 4000;  // a longer text of several lines is shown as a quoted string
 constexpr int most_source_lines = 12;       // lines of a function
 
 int by_tostring(lua_State* L) {
@@ -67,7 +67,7 @@ std::string string_text(lua_State* L, int index, Place place, const terminal::Di
     return place == Place::alone && string.size() > limit ? fmt::format("{} ({} bytes)", text, string.size()) : text;
 }
 
-/// A short function as its source, otherwise its place; ours by their signature.
+/// A short function as its source, otherwise its definition's position; a function of dinal by its signature.
 std::string function_text(lua_State* L, int index, const terminal::Display& screen) {
     if (const lua::Documented found = lua::documented(L, index); found.member != nullptr) {
         return text::wrapped(fmt::format("function {}", help::signature(found.member->doc)), screen.width - 1);
@@ -259,7 +259,7 @@ private:
             const bool short_number = brief_ && is_fraction(L_, index);
             Piece item{short_number ? fmt::format("{:.6g}", lua_tonumber(L_, index)) : scalar(index)};
             if (lua_isuserdata(L_, index) != 0 &&
-                text::columns(item.text) > room) {  // the beginning of our objects is enough
+                text::columns(item.text) > room) {  // the beginning of dinal's objects is enough
                 item = {shortened(item.text, room), false};
             }
             return item;

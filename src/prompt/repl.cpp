@@ -28,7 +28,7 @@ namespace dinal::prompt {
 
 namespace {
 
-/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces ours.
+/// As in lua, a string in the global _PROMPT or _PROMPT2 replaces dinal's prompt.
 std::string prompt_text(lua_State* L, const char* global, const char* ours) {
     std::string text = lua::push_global(L, global) == LUA_TSTRING ? lua_tostring(L, -1) : ours;
     lua_pop(L, 1);

@@ -59,8 +59,8 @@ void hand_over_partial(lua_State* L) {
     lua_pop(L, 1);
 }
 
-/// Ends a piece of work, with an error text on the top of the stack if it failed. `file` is the file of a chunk that
-/// did not compile.
+/// Reports the result of a piece of work, which has an error text on the top of the stack if it failed. `file` is the
+/// file of a chunk that did not compile.
 bool finished(lua_State* L, int status, const char* file = nullptr) {
     const bool interrupted = lua::stop_requested() == lua::Stop::interrupted;
     if (status != LUA_OK) {
@@ -202,7 +202,7 @@ bool run_script(lua_State* L, const Arguments& arguments) {
 bool run_reported_script(lua_State* L, const Arguments& arguments) {
     const char* script = arguments.words[arguments.script];
     if (std::string_view(script) != "-" && access(script, R_OK) != 0) {
-        return run_script(L, arguments);  // there is nothing to report
+        return run_script(L, arguments);  // no report without a script
     }
     std::string errors;
     lab::ScriptReport report(script, errors);
@@ -309,7 +309,7 @@ int run(const Arguments& arguments, Kernel kernel) {
             return exit_code::script_error;
         }
     } else {
-        const bool of_a_stranger = arguments.safe && !arguments.report;  // a stranger's script must not use up tries
+        const bool of_a_stranger = arguments.safe && !arguments.report;  // other people's scripts must not use up tries
         lab::keep_lab_tries([] { return state_file("lab-tries"); },
                             of_a_stranger ? lab::Tries::read : lab::Tries::write);
     }
@@ -333,7 +333,7 @@ int run(const Arguments& arguments, Kernel kernel) {
         program.code = exit_code::script_error;
     }
     if (!lua::reached_limit().empty()) {
-        lua::exit_in_time(program.code);  // does not close the script's objects: that might take for ever
+        lua::exit_in_time(program.code);  // without closing the script's objects, which might take for ever
     }
     return program.code;
 }

@@ -14,7 +14,7 @@ std::string absolute_folder(const char* variable) {
     return value != nullptr && value[0] == '/' ? value : "";
 }
 
-/// Our folder inside that of the variable, or else inside `in_home` of the home folder; empty without either.
+/// dinal's folder inside that of the variable, otherwise inside `in_home` of the home folder; empty if both are unset.
 std::string own_folder(const char* variable, const char* in_home) {
     std::string folder = absolute_folder(variable);  // the XDG specification ignores relative paths
     if (folder.empty()) {

@@ -44,8 +44,8 @@ extern "C" void on_interrupt(int signal) {
     if (auto* next = handler_of_python.load()) next(signal);
 }
 
-/// Installs our handler before Python's, which only records the signal. Repeated at each call, because signal.signal()
-/// replaces it.
+/// Installs dinal's handler before Python's, which only records the signal. Repeated at each call, because
+/// signal.signal() replaces it.
 void watch_interrupts() {
     struct sigaction now {};
     sigaction(SIGINT, nullptr, &now);
@@ -194,7 +194,7 @@ int object_text(lua_State* L) {
 constexpr lua::Member object_members[] = {{lua::a_metamethod<object_text>("__tostring"), {"", "", ""}}};
 const lua::Class object_class = {"Python object", {"", "", ""}, object_members};
 
-/// os.exit as sys.exit: a plain exit() would skip `finally` and atexit.
+/// os.exit like sys.exit, because a plain exit() would skip `finally` and atexit.
 int exit_of_python(lua_State* L) {
     need_python();
     const lua_Integer code = lua_isboolean(L, 1) ? 1 - lua_toboolean(L, 1) : luaL_optinteger(L, 1, 0);

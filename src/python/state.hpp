@@ -32,7 +32,7 @@ py::object in_lua(const Body& body) {
         [](lua_State* L, const void* data) -> py::object { return (*static_cast<const Body*>(data))(L); }, &body);
 }
 
-/// While it lives, other Python threads run during a long call of Lua. Ends as soon as Lua needs Python.
+/// While this object lives, other Python threads run during a long call of Lua. Ends as soon as Lua needs Python.
 class Unlocked {
 public:
     Unlocked();
@@ -72,7 +72,7 @@ private:
     bool passed_ = false;
 };
 
-/// While it lives, calls from Python run on this Lua thread, perhaps a coroutine.
+/// While this object lives, calls from Python run on this Lua thread, perhaps a coroutine.
 class RunningOn {
 public:
     explicit RunningOn(lua_State* L);

@@ -152,7 +152,7 @@ py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
 /// The arguments of a call; the place before them is for Python's use.
 struct Arguments {
     static constexpr int most = 16;
-    std::array<PyObject*, most + 1> places;  // uninitialised: a call of M must be quick
+    std::array<PyObject*, most + 1> places;  // uninitialised, because a call of M must be fast
     int count = 0;
 
     Arguments() { places[0] = nullptr; }  // NOLINT(cppcoreguidelines-pro-type-member-init)

@@ -12,7 +12,7 @@
 namespace dinal::source {
 
 struct CodeFacts {
-    std::vector<std::string> globals;  ///< names that it, or an inner function, reads or sets in its environment
+    std::vector<std::string> globals;  ///< names that the function, or an inner one, reads or sets in its environment
     std::vector<std::string> perhaps;  ///< texts that may be such names, used in a way that cannot be traced
     std::uint64_t digest = 0;          ///< hash of instructions and constants
 };

@@ -237,7 +237,7 @@ bool Carrier::c_function(int index) {
     const bool plain = lua_getupvalue(from_, index, 1) == nullptr;
     if (!plain) lua_pop(from_, 1);
     if (!plain || lua::documented(from_, index).member == nullptr) return fail(index);
-    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of ours taken out of its object
+    lua_pushcfunction(to_, lua_tocfunction(from_, index));  // a method of dinal without its object
     return true;
 }
 
@@ -261,7 +261,7 @@ bool Carrier::function(int index) {
         const std::vector<std::string> here = path_;
         for (const std::string& name : facts->perhaps) {
             if (!good || global(name)) continue;
-            path_ = here;  // it may not be needed
+            path_ = here;  // the global may not be needed
             error_.reset();
         }
     }
@@ -320,7 +320,7 @@ bool Carrier::global(const std::string& name) {
     return good;
 }
 
-// Objects of our classes: native parts are shared, user functions in them are carried.
+// Objects of dinal's classes: native parts are shared, user functions in them are carried.
 
 bool Carrier::object(int index) {
     const auto shared = [this](const auto* own) {
@@ -399,7 +399,7 @@ model::Excitation Carrier::excitation(const model::Excitation& own) {
     for (const model::Component& component : own.components()) {
         model::Term term = component.term;
         if (auto* script = std::get_if<model::Scripted>(&term)) script->function = user_function(script->function);
-        // valid, as the original was
+        // valid, as the original term was
         const model::Excitation one = model::Excitation::make(std::move(term)).value();
         sum = sum + one.scaled(component.gain).windowed(component.from, component.to);
     }

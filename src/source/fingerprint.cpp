@@ -149,7 +149,8 @@ std::uint64_t Fingerprint::reference(const Visited& piece) {
     return joined_digest(piece.digest, place->second);
 }
 
-/// A digest without object numbers, to order keys that are objects. The order of equal ones is undefined.
+/// A digest that contains no object numbers, used to sort keys that are objects. Keys with equal digests have no
+/// defined order.
 std::uint64_t Fingerprint::sketch(int index, int depth) {
     luaL_checkstack(L_, LUA_MINSTACK, "for a fingerprint");
     index = lua_absindex(L_, index);
@@ -186,7 +187,7 @@ void Fingerprint::content(int index) {
 }
 
 void Fingerprint::table(int index) {
-    if (lua::documented(L_, index).owner != nullptr) return;  // a class of ours
+    if (lua::documented(L_, index).owner != nullptr) return;  // a class of dinal
     struct Entry {
         std::uint64_t key_sketch, value_sketch;
         Visited key, value;

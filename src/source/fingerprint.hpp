@@ -16,15 +16,15 @@ namespace dinal::source {
 
 class Fingerprint {
 public:
-    /// Adds an object of a class that this room does not know; returns false if it is not one.
+    /// Adds an object of a class that this room does not know. Returns false if the value is not such an object.
     using AddObject = bool (*)(lua_State* L, int index, Fingerprint& print);
 
     Fingerprint(lua_State* L, AddObject other_objects) : L_(L), other_objects_(other_objects) {}
 
     void add(std::string_view bytes);
     void add(double number);
-    /// Functions count by their code (not their lines), their upvalues and the globals they name; tables regardless of
-    /// the order of fields; shared and cyclic references as such.
+    /// Functions count by their code (not their lines), their upvalues and the globals they name; tables count
+    /// regardless of the order of fields, and shared or cyclic references by identity.
     void add_value(int index);
 
     [[nodiscard]] std::uint64_t number() const { return number_; }

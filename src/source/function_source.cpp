@@ -136,7 +136,8 @@ std::optional<std::string> library_name(lua_State* L, int index) {
     return name;
 }
 
-/// A main chunk is loaded again: from its file, or for load("...") from its text, which is its name.
+/// An expression that loads a main chunk again: from its file or, for load("..."), from its text, which is the chunk's
+/// name.
 std::optional<std::string> whole_chunk(std::string_view source) {
     if (source.starts_with('=')) {
         return std::nullopt;
@@ -145,7 +146,7 @@ std::optional<std::string> whole_chunk(std::string_view source) {
                                    : "load(" + text::quoted(source) + ")";
 }
 
-/// Pushes the weak table of texts by function; false for one whose text is not at hand.
+/// Pushes the weak table of texts by function; false stands for a function without text.
 void push_known(lua_State* L) {
     lua::push_weak_table(L, &known_key);
 }

@@ -107,7 +107,7 @@ bool acts(const std::vector<model::Excitation>& acting) {
     return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
 }
 
-/// The lines that make a system and its drive. L may be null if there are no user functions.
+/// The lines that construct a system and its drive. L may be null if there are no user functions.
 std::vector<std::string> set_up_lines(lua_State* L, const model::System& system, const model::Drive& drive) {
     std::vector<std::string> lines;
     lines.emplace_back("-- dinal " DINAL_VERSION ": without the \"# \" before them, these lines repeat the run");

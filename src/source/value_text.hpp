@@ -25,7 +25,7 @@ public:
     using Aside = std::function<std::string(int index)>;
     ValueText(lua_State* L, Aside aside) : L_(L), aside_(std::move(aside)), budget_(std::numeric_limits<int>::max()) {}
 
-    /// An expression that makes the value at `index` again; `nil` and an entry in remarks() if there is none.
+    /// An expression that constructs the value at `index`. If none exists, returns `nil` and adds to remarks().
     std::string expression(int index);
 
     /// The variable for the numbers, if vectors are transferred separately.

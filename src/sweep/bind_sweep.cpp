@@ -87,8 +87,8 @@ constexpr lua::Doc bifurcation_doc{
     {&bifurcation_call}};
 
 /// The names of a point's results: "theta 1", "velocity 1", ...
-std::string look_name(const char* column, std::size_t look) {
-    return fmt::format("{} {}", column, look + 1);
+std::string sample_name(const char* column, std::size_t sample) {
+    return fmt::format("{} {}", column, sample + 1);
 }
 
 /// Pushes a field of the table at the index and removes it there; returns its type.
@@ -133,8 +133,8 @@ void refuse_own_options(lua_State* L, int more) {
     }
 }
 
-/// The function that workers call with a point; upvalues: the user's function, period, skip, keep.
-int looks_of_point(lua_State* L) {
+/// The function that workers call with a point. Its upvalues are the user's function, period, skip and keep.
+int samples_of_point(lua_State* L) {
     lua_settop(L, 1);
     lua_pushvalue(L, lua_upvalueindex(1));
     lua_insert(L, 1);
@@ -184,29 +184,29 @@ int looks_of_point(lua_State* L) {
         const lua::Vector values = *lua::test<lua::Vector>(L, -1);
         lua_pop(L, 1);
         for (std::size_t i = 0; i < std::min(keep, values.size()); ++i) {
-            lua::set_number(L, look_name(column, i).c_str(), values.begin()[i]);
+            lua::set_number(L, sample_name(column, i).c_str(), values.begin()[i]);
         }
     }
     return 1;
 }
 
 /// A row for each sample of these points; one row for a failed point.
-std::vector<DataColumn> looks_as_rows(const PointGrid& grid, const SweepResults& results,
-                                      const std::vector<std::size_t>& done, std::size_t keep) {
+std::vector<DataColumn> samples_as_rows(const PointGrid& grid, const SweepResults& results,
+                                        const std::vector<std::size_t>& done, std::size_t keep) {
     std::vector<std::size_t> points;
     std::vector<double> theta, velocity;
     std::vector<std::string> errors;
-    const auto number = [&results](const char* column, std::size_t look, std::size_t point) {
-        const double* numbers = results.find(look_name(column, look));
+    const auto number = [&results](const char* column, std::size_t sample, std::size_t point) {
+        const double* numbers = results.find(sample_name(column, sample));
         return numbers != nullptr ? numbers[point] : std::numeric_limits<double>::quiet_NaN();
     };
     for (const std::size_t point : done) {
         const auto failed = results.failures().find(point);
         const bool is_good = failed == results.failures().end();
-        for (std::size_t look = 0; look < (is_good ? keep : 1); ++look) {
+        for (std::size_t sample = 0; sample < (is_good ? keep : 1); ++sample) {
             points.push_back(point);
-            theta.push_back(number("theta", look, point));
-            velocity.push_back(number("velocity", look, point));
+            theta.push_back(number("theta", sample, point));
+            velocity.push_back(number("velocity", sample, point));
             errors.push_back(is_good ? "" : failed->second);
         }
     }
@@ -238,7 +238,7 @@ int bifurcation(lua_State* L) {
         lua_pushnumber(worker, period);
         lua_pushinteger(worker, static_cast<lua_Integer>(asked.skip));
         lua_pushinteger(worker, static_cast<lua_Integer>(asked.keep));
-        lua_pushcclosure(worker, lua::guarded<looks_of_point>, 4);
+        lua_pushcclosure(worker, lua::guarded<samples_of_point>, 4);
     };
     return push_data(
         L, swept(L, {.call = bifurcation_call.name,
@@ -251,7 +251,7 @@ int bifurcation(lua_State* L) {
                      .adapt = adapt,
                      .form = {.columns = {}, .points_of = "theta"},
                      .make_columns = [&](const SweepResults& results, const std::vector<std::size_t>& points) {
-                         return looks_as_rows(grid, results, points, keep);
+                         return samples_as_rows(grid, results, points, keep);
                      }}));
 }
 
@@ -326,7 +326,7 @@ void register_sweep(lua_State* L) {
 
 namespace {
 
-constexpr double accuracy = 1.5e-8;  // part of the range: closer to the minimum, values differ by rounding only
+constexpr double accuracy = 1.5e-8;  // fraction of the range: closer to the minimum, values differ by rounding only
 
 struct Range {
     std::string name;

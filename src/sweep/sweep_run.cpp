@@ -92,7 +92,7 @@ bool carry_data(lua_State* from, int index, lua_State* to) {
     return data != nullptr;
 }
 
-/// Runs in the new state with a Carrying; returns the function.
+/// Copies a function to a new state, in which it runs; receives a Carrying and returns the function.
 int carry_function(lua_State* L) {
     auto& carrying = *static_cast<Carrying*>(lua_touserdata(L, 1));
     source::Carrier carrier(carrying.from, L, carry_data);
@@ -363,7 +363,7 @@ private:
             lua::WorkerWatch& own = watches_[i];
             const std::uint64_t task = own.task;
             if (now - own.since <= work_.max_time) continue;
-            own.given_up = task;  // only this one: the worker may already have a new task
+            own.given_up = task;  // only this task: the worker may already have a new one
             lua::nudge(threads[i].native_handle());
         }
     }
@@ -469,7 +469,8 @@ std::size_t most_workers(lua_State* L) {
 std::size_t worker_count(lua_State* L, const std::optional<double>& asked, std::size_t points) {
     const std::size_t cores = lua::in_worker() ? 1 : std::max(1U, std::thread::hardware_concurrency());
     const std::size_t asked_for = asked ? static_cast<std::size_t>(*asked) : cores;
-    const std::size_t wanted = lua::memory_limit() > 0 ? std::min(asked_for, cores) : asked_for;  // each takes some
+    // each worker needs memory
+    const std::size_t wanted = lua::memory_limit() > 0 ? std::min(asked_for, cores) : asked_for;
     return std::clamp<std::size_t>(std::min(wanted, most_workers(L)), 1, std::max<std::size_t>(points, 1));
 }
 
@@ -493,7 +494,7 @@ public:
         return finished();
     }
 
-    // Python's executors compute the points; each of these calls may come from another Lua thread.
+    // For Python's executors, which compute the points. Each of these calls may come from another Lua thread.
 
     [[nodiscard]] std::vector<double> left() const {
         std::vector<double> firsts;
@@ -567,7 +568,7 @@ private:
         workers.run(L_);
     }
 
-    /// Adds a heading that reports failed points, as nobody checks a column that should be empty.
+    /// Adds a heading that reports failed points, because users rarely check a column that should be empty.
     [[nodiscard]] Data with_heading(std::vector<DataColumn> columns) const {
         Data data = task_.form;
         data.columns = std::move(columns);
@@ -779,7 +780,7 @@ std::optional<text::Error> SweepJournal::open() {
     }
     if (descriptor < 0 || ::fstat(descriptor, &about) != 0 || !S_ISREG(about.st_mode))
         return refused(path_, "is not a regular file");
-    // flock() would be inherited by a pool of processes, which may outlive this one and keep the lock.
+    // flock() would be inherited by a pool of processes, which may outlive this process and keep the lock.
     struct flock whole {};
     whole.l_type = F_WRLCK;
     whole.l_whence = SEEK_SET;
@@ -819,7 +820,7 @@ std::optional<text::Error> SweepJournal::take_points() {
     return rest.empty() ? std::nullopt : append("");
 }
 
-/// Writes after the last complete block.
+/// Appends after the last complete block; anything after it is truncated.
 std::optional<text::Error> SweepJournal::append(std::string_view text) {
     const int file = journal_->number();
     bool good = ::ftruncate(file, static_cast<off_t>(size_)) == 0;

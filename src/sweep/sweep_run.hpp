@@ -60,8 +60,8 @@ public:
         const std::size_t first = chunk * chunk_size_;
         return done_in_chunk_[chunk].load(std::memory_order_acquire) == std::min(chunk_size_, size() - first);
     }
-    /// The results of these finished points by name, followed by `error`, empty without one. May be called while others
-    /// work.
+    /// The results of these finished points by name, followed by the column `error`, which is empty for points without
+    /// an error. May be called while others work.
     [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
 
     // The following are for a single thread, while no other changes anything.
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] std::vector<std::size_t> done_points() const;
 
 private:
-    /// The words in these numbers of a column, if there are any.
+    /// The words encoded in these numbers of a column; none if there are no words.
     [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
 
     std::size_t chunk_size_;
@@ -142,7 +142,7 @@ public:
     std::optional<text::Error> open();
     [[nodiscard]] const std::optional<std::vector<DataColumn>>& result() const { return result_; }
 
-    /// Appends chunks completed since the last call, also while others work; `incomplete`: also partial ones.
+    /// Appends chunks completed since the last call, also while others work. `incomplete`: also appends partial ones.
     std::optional<text::Error> write(bool incomplete);
     /// Writes the result file and removes the journal.
     std::optional<text::Error> finish(const Data& result);

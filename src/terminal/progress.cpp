@@ -57,7 +57,7 @@ void erase() {
 
 }  // namespace
 
-/// The fraction done of the task at `place` of the stack, including the tasks inside it. Negative: unknown.
+/// The fraction done of the task at `place` of the stack, including the tasks inside it. Negative if unknown.
 double fraction_from(std::size_t place) {
     const Progress& own = *under_way[place];
     if (!std::isfinite(own.end_)) {

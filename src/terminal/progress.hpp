@@ -60,11 +60,11 @@ private:
 using ProgressViewer = void (*)(const std::string& line);
 void show_progress_by(ProgressViewer viewer);
 
-/// Hides all progress of this thread: it works for a task that another thread reports.
+/// Hides all progress of this thread, because another thread reports the progress of its task.
 void show_no_progress_here();
 
-/// Removes the line before other output; it returns with the next news. `ends_line`: whether that output ends its line;
-/// otherwise nothing may be written over it.
+/// Removes the line before other output; the next progress shows it again. `ends_line`: whether that output ends its
+/// line; otherwise nothing may be written over it.
 void make_way_for_output(bool ends_line);
 
 /// Removes the line and clears the stack, however the task ended.

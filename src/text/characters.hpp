@@ -7,7 +7,7 @@
 
 namespace dinal::text {
 
-/// Returns the columns of a text on a terminal. Control characters and bytes that are not UTF-8 count as one.
+/// Returns the columns of a text on a terminal. Control characters and bytes that are not UTF-8 count as one column.
 std::size_t columns(std::string_view text);
 
 /// Returns the longest beginning of at most `width` columns.

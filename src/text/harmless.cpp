@@ -19,7 +19,8 @@ std::size_t colour_at(std::string_view text) {
     if (end == std::string_view::npos || text[end] != 'm') {
         return 0;
     }
-    constexpr std::array<std::string_view, 5> styles = {"", "0", "1", "4", "7"};  // neither blinking nor hidden
+    // styles that neither blink nor hide text
+    constexpr std::array<std::string_view, 5> styles = {"", "0", "1", "4", "7"};
     for (std::string_view numbers = text.substr(2, end - 2);;) {
         const std::size_t size = std::min(numbers.find(';'), numbers.size());
         const std::string_view one = numbers.substr(0, size);

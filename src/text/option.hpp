@@ -1,5 +1,5 @@
-// The named options of a call as data: one row an option, beside the struct that it fills. The check of the user's
-// table, the signature, Tab, help, the manual and printed values all read these rows.
+// The named options of a call as data: one row for each option, next to the struct that it fills. The check of the
+// user's table, the signature, Tab, help, the manual and printed values all read these rows.
 //
 //     struct Pulse { double amplitude = 1, at = 0, width = 0; };
 //     inline constexpr text::Option pulse_options[] = {
@@ -44,7 +44,7 @@ inline constexpr Range not_negative{"not be negative", [](double x) { return x >
 inline constexpr Range not_zero{"not be zero", [](double x) { return x != 0; }};
 inline constexpr Range between_0_and_1{"lie between 0 and 1", [](double x) { return x > 0 && x < 1; }};
 
-/// The value that a user writes: nothing; a number; true or false; a choice, by its index; text; numbers.
+/// The value given by a user: absent; a number; true or false; a choice, by its index; text; numbers.
 using OptionValue = std::variant<std::monostate, double, bool, std::size_t, std::string, std::vector<double>>;
 
 /// In the order of OptionValue. `other` is read by the call itself: a system, a column name.
@@ -137,7 +137,7 @@ std::string list_literal(std::span<const double> numbers);
 enum class Defaults {
     left_out,
     written,
-    described,  ///< infinite ones, too, in the words of their row, which need not be Lua: "max_panel = 0.6 T0"
+    described,  ///< includes infinite values, in the words of their row, which need not be Lua: "max_panel = 0.6 T0"
 };
 
 namespace detail {
@@ -244,7 +244,7 @@ std::optional<Error> complaint(std::span<const Option> options, const T& object)
     return detail::complaint(options, &detail::owner_tag<T>, &object);
 }
 
-/// Returns the Lua text that makes the object again: "excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }".
+/// Returns the Lua text that constructs the object: "excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }".
 /// Infinite and absent values are omitted.
 template <class T>
 std::string lua_text(std::string_view call, std::span<const Option> options, const T& object, Defaults defaults) {

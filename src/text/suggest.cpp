@@ -135,7 +135,7 @@ int slips(std::string_view word, std::string_view name) {
     const std::string small_word = lower(word);
     const std::string small_name = lower(name);
     if (small_word == small_name) {
-        return 0;  // better than any slip: RD is Rd, not Re
+        return 0;  // a match except for case is better than any slip: RD is Rd, not Re
     }
     const int count = std::min(edits(word, name), edits(small_word, small_name) + 1);
     const int allowed = allowed_slips(small_word, small_name);

@@ -100,7 +100,7 @@ double DenHartog::velocity_excess(double x) const {
     return (sine_ * modes_.pushed(x) - velocity_ * difference) / (r_ * std::sin(r_ * x));
 }
 
-/// The same at the turn itself: the mass must leave it towards the other side, against `breakaway`.
+/// The excess at the turn itself, where the mass must leave towards the other side against `breakaway`.
 double DenHartog::excess_at_turn(double friction, double breakaway) const {
     return (breakaway - friction * (angle_ + 2 * modes_.zeta() * velocity_)) / (r_ * r_);
 }

@@ -52,8 +52,8 @@ private:
     Modes modes_;
     double half_;      // half a period as x = w0 t, pi/r
     double apart_;     // q - r (underdamped)
-    double angle_;     // Y: response to the square wave +1 after the turn, at the turn
-    double velocity_;  // derivative Y' by x
+    double angle_;     // response to the square wave that is +1 after the turn, at the turn
+    double velocity_;  // derivative of this response with respect to x
     double sine_;      // (1 + e^(-zeta P) cos qP)/Delta, the coefficient of pushed(x) in Y(x)
 };
 

@@ -35,7 +35,7 @@ private:
 /// An angle (or y) and its derivative at x = w0 t, from the values at x = 0.
 struct Motion2 {
     double y = 0;
-    double dy = 0;  ///< by x
+    double dy = 0;  ///< derivative with respect to x
 };
 inline Motion2 free_motion(const Modes& modes, const Motion2& start, double x) {
     const auto [released, pushed, pushed_velocity] = modes.after(x);

@@ -93,7 +93,7 @@ std::vector<Integrator> both() {
 
 }  // namespace
 
-TEST_CASE("the counter counts", "[allocation]") {
+TEST_CASE("the counter counts allocations", "[allocation]") {
     const long before = allocations;
     const auto one = std::make_unique<int>(1);
     CHECK(*one == 1);

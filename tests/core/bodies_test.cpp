@@ -142,7 +142,8 @@ bool alike(const Run& a, const Run& b) {
 
 }  // namespace
 
-TEST_CASE("chains that rub move the same at other resolutions, and as a time stepping without modes says", "[bodies]") {
+TEST_CASE("random chains with friction move the same at another tolerance, and as a plain time stepping computes",
+          "[bodies]") {
     struct Group {
         std::vector<unsigned> seeds;
         bool sticky;
@@ -178,7 +179,7 @@ TEST_CASE("chains that rub move the same at other resolutions, and as a time ste
     }
 }
 
-TEST_CASE("the least in a box is that of a box that holds it, and lies on the side that does not", "[bodies]") {
+TEST_CASE("the minimum in a box is the free one inside, and lies on the bound that excludes it", "[bodies]") {
     Eigen::MatrixXd G(2, 2);
     G << 2, 1, 1, 3;
     const Eigen::Vector2d g(-3, -4), wide(10, 10), narrow(0.5, 10);

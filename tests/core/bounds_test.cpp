@@ -114,7 +114,7 @@ Number apply(Op op, const Number& a, const Number& b) {
 
 }  // namespace
 
-TEST_CASE("a disc holds what a program gives for the complex numbers in it") {
+TEST_CASE("a disc contains the values of a program for the complex numbers in its arguments") {
     Lot lot(1);
     int samples = 0, tight = 0;
     double most = 0;
@@ -159,7 +159,7 @@ TEST_CASE("a disc holds what a program gives for the complex numbers in it") {
     CHECK(most > 0.99);
 }
 
-TEST_CASE("an interval holds what a program gives, and its decisions those at each place") {
+TEST_CASE("an interval contains the values of a program, and its decisions are those at each point") {
     Lot lot(2);
     int known = 0;
     for (int n = 0; n < 20000; ++n) {
@@ -191,7 +191,7 @@ TEST_CASE("an interval holds what a program gives, and its decisions those at ea
     CHECK(known > 3000);
 }
 
-TEST_CASE("whole powers, waves and sums of exponentials are bounded as they are") {
+TEST_CASE("whole powers, waves and sums of exponentials have tight bounds") {
     // (t - 1)^2 exp(-t) on a disc of 1 about 1: 0 there, and at most e^0 = 1 (1^2 e^(1 - 1)).
     const std::vector<double> registers{0, 1, 2, 0, 0, 0, 0, 0};
     const Formula formula({{.op = Op::subtract, .to = 3, .a = 0, .b = 1},

@@ -32,8 +32,7 @@ Function jumps_at(double place) {
 
 }  // namespace
 
-TEST_CASE("a jump is found wherever it is among the values, to the double at which the new value begins",
-          "[spectral]") {
+TEST_CASE("a jump anywhere between samples is found, to the double at which the new value begins", "[spectral]") {
     for (const double place : {1.0625, 1.06, 1.3, 1.5, 1.7, 1.999, 2.0}) {
         CAPTURE(place);
         const auto found = found_in(jumps_at(place));
@@ -42,7 +41,7 @@ TEST_CASE("a jump is found wherever it is among the values, to the double at whi
     }
 }
 
-TEST_CASE("a kink is found to rounding, and a smooth function has neither", "[spectral]") {
+TEST_CASE("a kink is found to rounding, and a smooth function has neither jump nor kink", "[spectral]") {
     for (const double place : {1.1, 1.3, 1.55, 1.9}) {
         CAPTURE(place);
         const auto found = found_in([place](double t) { return std::cos(t) + std::fabs(t - place); });
@@ -55,7 +54,8 @@ TEST_CASE("a kink is found to rounding, and a smooth function has neither", "[sp
     CHECK_FALSE(found_in([](double t) { return 1 / (1 + 30 * (t - 1.5) * (t - 1.5)); }));
 }
 
-TEST_CASE("the next jump is known where the last ones came evenly, alone or in turns, and else is not", "[spectral]") {
+TEST_CASE("the next jump is predicted if the last ones were evenly spaced, alone or alternating, and otherwise not",
+          "[spectral]") {
     const auto square = [](double t) { return std::fmod(t, 0.25) < 0.0625 ? 1.0 : 0.0; };
     PassedBreaks passed;
     CHECK_FALSE(passed.next(10, square));

@@ -149,7 +149,7 @@ TEST_CASE("each integrator follows every reference system, with its events in ki
     }
 }
 
-TEST_CASE("rows are at the asked times and their torques add up", "[conformance]") {
+TEST_CASE("rows are at the requested times and their torques add up", "[conformance]") {
     for (const ReferenceSystem& s : reference_systems()) {
         CAPTURE(s.name);
         const Oscillator& o = s.oscillator;

@@ -18,7 +18,7 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
-TEST_CASE("a pull at its limit holds, and so does one beyond it by less than the angle is known") {
+TEST_CASE("a pull at its limit holds, and so does one beyond it by less than the rounding of the angle") {
     const double k = 3, limit = 0.7;
     const auto beyond = [&](double theta) {
         return model::pull_on_spring(limit, k, 0, theta, 0, Motion::backward).beyond;
@@ -28,7 +28,7 @@ TEST_CASE("a pull at its limit holds, and so does one beyond it by less than the
     CHECK(beyond(0.2) < 0);
 }
 
-TEST_CASE("a contact that came to a stop sticks, turns or goes on, as its pull says") {
+TEST_CASE("a contact that has stopped sticks, turns or slips on, depending on its pull") {
     const Before slid{.slid = Motion::forward};
     const Verdict holds = decide(slid, {0, Motion::backward});
     CHECK(holds.way == Motion::stuck);
@@ -41,13 +41,13 @@ TEST_CASE("a contact that came to a stop sticks, turns or goes on, as its pull s
     CHECK_FALSE(goes_on.told);
 }
 
-TEST_CASE("a contact that held slips beyond its limit; one that was let go and holds again sticks") {
+TEST_CASE("a contact that held slips beyond its limit; one that was released and holds again sticks") {
     CHECK(decide({.held = true}, {0.1, Motion::forward}).told == EventKind::slip);
     CHECK_FALSE(decide({.held = true}, {-0.1, Motion::forward}).told);
     CHECK(decide({}, {-0.1, Motion::forward}).told == EventKind::stick);
 }
 
-TEST_CASE("a creep goes on in balance, speeds up without an event, and sticks when it is pulled back") {
+TEST_CASE("a creep continues in balance, becomes a slip without an event, and sticks when it is pulled back") {
     const double sliding = 0.5, holding = 0.8, torques = 2;
     const auto within = creeps_within(-0.5, Motion::backward, sliding, holding, torques);
     REQUIRE(within);
@@ -67,7 +67,7 @@ TEST_CASE("a creep goes on in balance, speeds up without an event, and sticks wh
     CHECK(sticks.told == EventKind::stick);
 }
 
-TEST_CASE("a stop beyond the limit by rounding is at the limit, any other where it is") {
+TEST_CASE("a stop beyond the limit by rounding is moved to the limit, any other stays where it is") {
     const double k = 4, limit = 0.5, M = 0.1;
     const auto place = [&](double theta) {
         const model::Pull pull = model::pull_on_spring(limit, k, M, theta, 0, Motion::backward);
@@ -80,7 +80,7 @@ TEST_CASE("a stop beyond the limit by rounding is at the limit, any other where 
     CHECK(place(0.1) == 0.1);
 }
 
-TEST_CASE("a stick that the next slip ends at once, with a pull that hardly changed, was none") {
+TEST_CASE("a stick that the next slip ends at once, under a pull that hardly changed, is withdrawn") {
     const model::Event stick{.t = 1, .kind = EventKind::stick}, slip{.t = 1 + 1e-9, .kind = EventKind::slip};
     const auto events_after = [&](const Released& released) {
         std::vector<model::Event> events{stick};

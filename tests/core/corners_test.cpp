@@ -66,8 +66,9 @@ void check(const Tabulated& law, const State& initial, double belt, double wall,
 
 }  // namespace
 
-TEST_CASE("tables that fall, rise, nearly jump or have a narrow bump move as an independent integrator says",
-          "[laws][corners][long]") {
+TEST_CASE(
+    "friction tables that fall, rise, nearly jump or have a narrow bump move the mass as an independent integrator does",
+    "[laws][corners][long]") {
     const Tabulated tables[] = {
         {.speed = {0, 0.5, 2}, .torque = {0.45, 0.2, 0.35}, .breakaway = 0.6},
         {.speed = {0, 0.05, 0.2, 0.6, 1}, .torque = {0.6, 0.4, 0.3, 0.32, 0.4}},
@@ -88,7 +89,7 @@ TEST_CASE("tables that fall, rise, nearly jump or have a narrow bump move as an 
     }
 }
 
-TEST_CASE("a speed that only touches a corner, or stays at it, goes on", "[laws][corners]") {
+TEST_CASE("a speed at or near a corner of a friction table does not end the run", "[laws][corners]") {
     // A block pushed to the very speed of a corner, where the push balances friction.
     const Tabulated table{.speed = {0, 1, 2}, .torque = {0.5, 0.3, 0.6}};
     const Oscillator block = Oscillator::make({.inertia = 1, .stiffness = 0, .friction = table}).value();

@@ -42,7 +42,7 @@ std::vector<Way> ways() {
 
 }  // namespace
 
-TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd",
+TEST_CASE("a ramp that pulls a creeping mass forward moves it at once, though Re > Rd",
           "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 2.0}) {
         const double at = 60 * zeta, slope = -0.04;
@@ -64,7 +64,7 @@ TEST_CASE("a ramp that pulls a creeping mass on moves it at once, though Re > Rd
     }
 }
 
-TEST_CASE("a ramp that pulls a creeping mass back holds it until Re is passed on the other side",
+TEST_CASE("a creeping mass that a ramp pulls back sticks until Re is passed on the other side",
           "[exact][spectral][rk4][creep][long]") {
     for (const double zeta : {1.0, 1.5}) {
         const double at = 60 * zeta, slope = 0.4;
@@ -81,7 +81,7 @@ TEST_CASE("a ramp that pulls a creeping mass back holds it until Re is passed on
     }
 }
 
-TEST_CASE("what creeps at the end of a run is stuck there, and goes on creeping when the run goes on",
+TEST_CASE("a mass that creeps at the end of a run is stuck there, and creeps again when the run is continued",
           "[exact][spectral][creep][resume]") {
     for (const Integrator& method : std::vector<Integrator>{Exact{}, Spectral{}}) {
         CAPTURE(method.index());

@@ -47,8 +47,9 @@ void check_pairs(const Crest& crest, const Excitation& M, const Integrator& meth
 
 }  // namespace
 
-TEST_CASE("a crest that passes the limit by rounding or little more slips and sticks, or holds, and the run goes on",
-          "[long][exact][spectral][rk4][crest]") {
+TEST_CASE(
+    "a crest of M that passes the limit by rounding or little more slips and sticks, or holds, and the run continues",
+    "[long][exact][spectral][rk4][crest]") {
     for (const double Re : {0.3, 1.0, 1e-9}) {
         for (const double above : {1e-16, 4e-15, 1e-13, 1e-11, 1e-9, 1e-7}) {
             for (const double omega : {0.1, 0.013, 1.0}) {
@@ -70,7 +71,7 @@ TEST_CASE("a crest that passes the limit by rounding or little more slips and st
     }
 }
 
-TEST_CASE("a block drawn with Re = Rd comes down to velocity zero once a period, and never stops",
+TEST_CASE("a block drawn with Re = Rd slows down to velocity zero once a period, and never stops",
           "[long][exact][spectral]") {
     struct Case {
         double k, Re, speed;

@@ -20,7 +20,7 @@ std::optional<double> leaves(const F& value, Half half, double rounded = 0) {
 
 }  // namespace
 
-TEST_CASE("a value that begins beyond zero within its rounding, and goes on, has passed it at the beginning") {
+TEST_CASE("a value that begins beyond zero within its rounding, and moves on, has passed it at the beginning") {
     // Its kink keeps the series from telling anything.
     const auto kinked = [](double x) { return -1e-17 - (1 + x) * (1 + std::fabs(x - 0.21)); };
     REQUIRE(leaves(kinked, 1).has_value());
@@ -29,18 +29,18 @@ TEST_CASE("a value that begins beyond zero within its rounding, and goes on, has
     CHECK(leaves(smooth, 1) == -1.0);
 }
 
-TEST_CASE("a value that stands at zero for a while leaves it where it does") {
+TEST_CASE("a value that stays at zero for a while passes it at the end of that time") {
     const auto late = [](double x) { return x < 0.37 ? -1e-17 : 0.37 - x; };
     REQUIRE(leaves(late, 1, 1e-16).has_value());
     CHECK(std::fabs(*leaves(late, 1, 1e-16) - 0.37) < 1e-9);
 }
 
-TEST_CASE("a value that begins beyond zero within its rounding, and comes back, has not passed it") {
+TEST_CASE("a value that begins beyond zero within its rounding, and returns, has not passed it") {
     const auto back = [](double x) { return -1e-17 + (1 + x) * (1 + std::fabs(x - 0.21)); };
     CHECK_FALSE(leaves(back, 1).has_value());
 }
 
-TEST_CASE("a zero right behind the one at which a curve begins is found where it is") {
+TEST_CASE("a zero just after the one at which a curve begins is found") {
     // A bounce of 1e-7 of a stretch: the curve is below its own rounding between both.
     const auto always = [](double) { return true; };
     for (const double length : {1e-7, 1e-5, 1e-3}) {

@@ -80,7 +80,7 @@ void check_reads_back(const std::vector<double>& values) {
 
 }  // namespace
 
-TEST_CASE("numbers read back bit by bit: extremes, and bit patterns by chance", "[csv]") {
+TEST_CASE("numbers read back bit by bit: extremes, and random bit patterns", "[csv]") {
     using limits = std::numeric_limits<double>;
     std::mt19937_64 random(1989);
     std::vector<double> values = {0.0,
@@ -107,7 +107,7 @@ TEST_CASE("numbers read back bit by bit: extremes, and bit patterns by chance", 
     check_reads_back(values);
 }
 
-TEST_CASE("a file is comments, names and the shortest numbers", "[csv]") {
+TEST_CASE("a file consists of comments, names and the shortest numbers", "[csv]") {
     const TemporaryFolder folder;
     const std::vector<double> t = {0, 0.1, 0.2, 0.30000000000000004};
     const std::vector<double> friction = {-16.5, -16.5, -16.5, 0};
@@ -136,7 +136,7 @@ TEST_CASE("a table without rows keeps its names", "[csv]") {
     CHECK(back->values.cols() == 2);
 }
 
-TEST_CASE("names that could be mistaken are quoted and read back", "[csv]") {
+TEST_CASE("names that could be mistaken for something else are quoted and read back", "[csv]") {
     const TemporaryFolder folder;
     const Strings names = {"1", "rest angle", "a,b", "say \"x\"", "#", "x;y", "-2.5e3", "theta"};
     const Table table{names, Eigen::MatrixXd::Ones(1, 8), {}};
@@ -185,7 +185,7 @@ TEST_CASE("the separator is found in the second line", "[csv]") {
     CHECK(parsed("\"a, b\" c\n1 2\n").names == Strings{"a, b", "c"});
 }
 
-TEST_CASE("a file of tabs may have decimal commas, and Excel's line sep=; is no line of names", "[csv]") {
+TEST_CASE("a file with tabs may have decimal commas, and Excel's line sep=; is not a line of names", "[csv]") {
     const auto second = [](const char* text) { return parse_columns(text, "x").value().columns.at(1); };
     CHECK(second("t\tx\n0,0\t0,5\n0,1\t0,25\n").numbers == std::vector<double>{0.5, 0.25});
     CHECK(second("t\tx\n0,0\t0,5\n0,1\t0,25\n").name == "x");
@@ -207,13 +207,13 @@ TEST_CASE("all line ends, a byte order mark and blank lines are understood", "[c
     check_is_the_pair(parsed("\n \nt,theta\n\n0,1.5\n0.25,-2e-3\n\n\t\n\r\n"));
 }
 
-TEST_CASE("comments are kept in order wherever they stand", "[csv]") {
+TEST_CASE("comments are kept in order, wherever they are", "[csv]") {
     const Table table = parsed("#one\n# two\n\n  # three\nt,theta\n#  four\n0,1.5\n0.25,-2e-3\n#\n");
     check_is_the_pair(table);
     CHECK(table.comments == Strings{"one", "two", "three", " four", ""});
 }
 
-TEST_CASE("without a line of names the columns have numbers", "[csv]") {
+TEST_CASE("without a line of names the columns are numbered", "[csv]") {
     const Table table = parsed("# t theta\n0 1.5\n1 2.5\n");
     CHECK(table.names == Strings{"1", "2"});
     CHECK(table.values(1, 1) == 2.5);
@@ -221,7 +221,7 @@ TEST_CASE("without a line of names the columns have numbers", "[csv]") {
     CHECK(parsed("t,,M\n1,2,3\n").names == Strings{"t", "2", "M"});
 }
 
-TEST_CASE("numbers may have a plus sign, no digits on one side of the point, or be too small to tell from zero",
+TEST_CASE("numbers may have a plus sign, no digits on one side of the point, or be too small to differ from zero",
           "[csv]") {
     const Table table = parsed("+1,.5,5.,+.5,1E3\n1e-400,-1e-400,4.9e-324,1e-5,-7\n");
     CHECK(table.values.row(0) == Eigen::RowVectorXd{{1, .5, 5, .5, 1000}});
@@ -229,7 +229,7 @@ TEST_CASE("numbers may have a plus sign, no digits on one side of the point, or 
     CHECK(std::signbit(table.values(1, 1)));
 }
 
-TEST_CASE("a row whose first numbers are plain is read once and as a whole, or refused", "[csv]") {
+TEST_CASE("a row that begins with plain numbers is read once and as a whole, or refused", "[csv]") {
     for (const char* text : {"a,b,c\n1,2,+3\n4, 5\t,6\n", "a;b;c\n1;2;+3\n4;5 ; 6\n", "a\tb\tc\n1\t2\t+3\n 4\t5 \t6\n",
                              "a b c\n1 2 +3\n 4\t5  6 \n", "a,b,c\n1,2,3\n4,5,6"}) {
         CAPTURE(text);
@@ -259,7 +259,7 @@ TEST_CASE("a ragged row is refused with its line", "[csv]") {
     }
 }
 
-TEST_CASE("what is no finite number is refused with its line and column", "[csv]") {
+TEST_CASE("a field that is not a finite number is refused with its line and column", "[csv]") {
     CHECK(fault("t,theta\n0,1\n1,abc\n") == "x.csv:3: column 2 (theta) is 'abc', not a number");
     CHECK(fault("0,1\n1,\n") == "x.csv:2: column 2 is empty");
     CHECK(fault("t,theta\nnan,1\n") == "x.csv:2: column 1 (t) is 'nan', but only finite numbers can be used");
@@ -277,7 +277,7 @@ TEST_CASE("what is no finite number is refused with its line and column", "[csv]
     CHECK(fault("t\n0\n1\x01\n") == "x.csv:3: column 1 (t) is '1?', not a number");
 }
 
-TEST_CASE("numbers may be names where a word stands before them and only numbers below", "[csv]") {
+TEST_CASE("a column name may be a number if it is quoted, or if a word precedes it", "[csv]") {
     CHECK(fault("0,abc\n1,2\n") == "x.csv:1: column 2 is 'abc', not a number");
     CHECK_THAT(fault("nan,0\n"), Contains("x.csv:1: column 1 is 'nan'"));
     CHECK(parsed("t,1,2\n0,0,0\n").names == Strings{"t", "1", "2"});
@@ -291,7 +291,7 @@ TEST_CASE("a file without names or numbers is called empty", "[csv]") {
     }
 }
 
-TEST_CASE("a file that is no text is refused with the line of its NUL byte", "[csv]") {
+TEST_CASE("a binary file is refused with the line of its NUL byte", "[csv]") {
     using namespace std::string_view_literals;
     CHECK_THAT(fault("t\n1\n2\0\n"sv), Contains("x.csv:3: there is a NUL byte"));
     CHECK_THAT(fault("\xFF\xFEt\0,\0u\0\n\0"sv), Contains("x.csv:1: there is a NUL byte") && Contains("UTF-8"));

@@ -93,7 +93,7 @@ std::string kinds(const Decision& made) {
 
 }  // namespace
 
-TEST_CASE("a block that comes to a stop holds up to its breakaway torque, and turns or goes on beyond it") {
+TEST_CASE("a block that stops holds up to its breakaway torque, and beyond it turns or slips on") {
     const Stack one({{1, 1.5}});
     for (const double torque : {-1.6, -1.4, 0.0, 1.4, 1.6}) {
         Present present(one, torque);
@@ -108,7 +108,7 @@ TEST_CASE("a block that comes to a stop holds up to its breakaway torque, and tu
     }
 }
 
-TEST_CASE("of two contacts in a row only the one that is over its limit lets go") {
+TEST_CASE("of two contacts in a row only the one beyond its limit is released") {
     for (const double torque : {0.7, 0.9, 3.0}) {  // the upper contact holds 0.8
         Present present(Stack({{1, 1.5}, {0.5, 0.8}}), torque);
         const Decision made = present.decide();
@@ -118,7 +118,7 @@ TEST_CASE("of two contacts in a row only the one that is over its limit lets go"
     }
 }
 
-TEST_CASE("what holds together goes together") {
+TEST_CASE("blocks that stick together slip together") {
     Present present(Stack({{1, 1.5}, {5, 5}}), 3);
     const Decision made = present.decide();
     CHECK(made.now.mode.friction[0].way == Motion::forward);
@@ -126,7 +126,7 @@ TEST_CASE("what holds together goes together") {
     CHECK(kinds(made) == "slip");
 }
 
-TEST_CASE("the same present has the same decision, whatever was decided before") {
+TEST_CASE("equal states have equal decisions, whatever was decided before") {
     Present present(Stack({{1, 1.5}, {0.5, 0.8}, {0.3, 0.3}}), 0.9);
     const Decision first = present.decide();
     const Now resting = present.now;

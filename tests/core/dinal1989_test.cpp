@@ -140,14 +140,14 @@ TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundr
     }
 }
 
-TEST_CASE("one wrong index in stage 3 gives the numbers of chapter 6", "[dinal1989]") {
+TEST_CASE("one wrong index in stage 3 gives the numbers of chapter 6 of the 1989 report", "[dinal1989]") {
     // In units of 1, not of T0, which is 0.99998 with k = 39.48: the last digits tell.
     CHECK(after(chapter_6, 0.1, 5, true) == within(-1.0143600, 5e-8));
     CHECK(after(chapter_6, 0.01, 50, true) == within(-1.0000161, 5e-8));
     CHECK(after(chapter_6, 0.001, 500, true) == within(-1.000000014, 5e-10));
 }
 
-TEST_CASE("chapter 6: growth without damping and too slow a decay with it", "[dinal1989]") {
+TEST_CASE("chapter 6 of the 1989 report: growth without damping and too slow a decay with it", "[dinal1989]") {
     const Oscillator undamped = nondimensional(0, 0);
     const Oscillator damped = nondimensional(0.02387, 0);
     CHECK(growth(undamped, 0.1, 2000, true) == within(1.0030, 5e-5));
@@ -157,7 +157,8 @@ TEST_CASE("chapter 6: growth without damping and too slow a decay with it", "[di
     CHECK(std::exp(-0.02387 * 2 * pi * 0.1) == within(0.98511, 5e-6));  // the truth
 }
 
-TEST_CASE("chapter 6 diverges from h = 0.196 on, the printed listing from 0.457 on", "[dinal1989]") {
+TEST_CASE("the method of chapter 6 of the 1989 report diverges from h = 0.196 on, the printed listing from 0.457 on",
+          "[dinal1989]") {
     CHECK_FALSE(diverges(0.195, true, 0.02387));
     CHECK(diverges(0.197, true, 0.02387));
     CHECK_FALSE(diverges(0.456, false, 0.02387));

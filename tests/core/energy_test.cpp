@@ -110,7 +110,7 @@ TEST_CASE("dry friction takes Rd (X0 + X1) of each half cycle of a free decay, e
     CHECK(energy.flow == Approx(gave).epsilon(near));
 }
 
-TEST_CASE("a hundred thousand half cycles leave no more rounding in the sum than one", "[long][energy]") {
+TEST_CASE("the sum over a hundred thousand half cycles has no more rounding than one half cycle", "[long][energy]") {
     // The parts of a panel add up to 1e-15 of what flows in it, by chance in either direction; sums that rounded at
     // each half cycle are off by 2e-13 here.
     const Energy energy = energy_of_run(nondimensional(0.119, 0.418), harmonic(1, 2 * pi), {1, 0}, {0, 5e4});
@@ -153,7 +153,7 @@ TEST_CASE("the columns are the balance of a run up to each row", "[energy]") {
     }
 }
 
-TEST_CASE("a mass that never moves keeps what its spring holds, and nothing flows", "[energy]") {
+TEST_CASE("a mass that never moves keeps the energy of its spring, and no energy flows", "[energy]") {
     const Energy energy = energy_of_run(nondimensional(0.1, 0.3), harmonic(0.1, 3), {0.1, 0}, {0, 9});
     CHECK(energy.half_cycles.empty());
     CHECK(energy.total.error() == 0);
@@ -162,7 +162,8 @@ TEST_CASE("a mass that never moves keeps what its spring holds, and nothing flow
     CHECK(energy.finish.spring == 0.1 * 0.1 / 2);
 }
 
-TEST_CASE("a run that went on after its panels were full says up to when they reach", "[energy][resume]") {
+TEST_CASE("a run continued after its memory for the motion was full states up to which time the energy is known",
+          "[energy][resume]") {
     const Oscillator system = nondimensional(0.05, 0);
     const Excitation M = harmonic(1, 5);
     const Limits little{.memory = 100000};
@@ -182,7 +183,7 @@ TEST_CASE("a run that went on after its panels were full says up to when they re
     }
 }
 
-TEST_CASE("what acts with a delay knows its past where the memory for the motion is full", "[energy][resume]") {
+TEST_CASE("a delayed function knows its past although the memory for the motion is full", "[energy][resume]") {
     const Oscillator system = nondimensional(0.05, 0.1);
     const auto delayed = std::make_shared<DelayedController>();
     delayed->by = 0.4;

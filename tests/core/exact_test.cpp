@@ -17,7 +17,7 @@ using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
 
-TEST_CASE("exact says what it does not take, and what takes it", "[exact]") {
+TEST_CASE("exact names what it does not accept, and the integrator that accepts it", "[exact]") {
     class Zero : public UserFunction {
         double value(double, const State&) override { return 0; }
     };
@@ -46,7 +46,8 @@ TEST_CASE("exact says what it does not take, and what takes it", "[exact]") {
     CHECK(std::holds_alternative<Spectral>(integrator_for(slides, {})));
 }
 
-TEST_CASE("along a record of samples exact goes from line to line, whatever rows are asked for", "[exact][rows]") {
+TEST_CASE("along a record of samples exact integrates from line to line, whatever rows are requested",
+          "[exact][rows]") {
     for (const double uneven : {0.0, 0.3}) {
         Samples record;
         for (int i = 0; i <= 1500; ++i) {
@@ -84,7 +85,7 @@ TEST_CASE("along a record of samples exact goes from line to line, whatever rows
     }
 }
 
-TEST_CASE("a row stands where it stands, whatever the arc before it was made of", "[exact][rows]") {
+TEST_CASE("a row shortly after an arc given by a Taylor series has its exact angle", "[exact][rows]") {
     // A pulse shorter than 0.3 rad is told by its Taylor series, and the arc after it has a row as long after it.
     const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
     const double width = 0.125;
@@ -99,7 +100,7 @@ TEST_CASE("a row stands where it stands, whatever the arc before it was made of"
     }
 }
 
-TEST_CASE("who may stop a run is asked often, also where M turns a million times a period", "[exact]") {
+TEST_CASE("a monitor can often stop a run, even if M oscillates a million times in a period", "[exact]") {
     const Oscillator system = Oscillator::make({.inertia = 1, .stiffness = 1}).value();
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1e6}).value();
     int asked = 0;
@@ -108,7 +109,7 @@ TEST_CASE("who may stop a run is asked often, also where M turns a million times
     CHECK(run->outcome == Outcome::interrupted);  // 2e7 radians were one arc, between two questions
 }
 
-TEST_CASE("along a record the angle does not lose what the sum of its ways rounds off", "[exact]") {
+TEST_CASE("along a record the angle does not accumulate rounding errors", "[exact]") {
     // A steady ramp, k theta = M - Rd, of 128 samples a time unit, exact in doubles; no event comes.
     const double w0 = 2 * std::numbers::pi, v = 0.3, Rd = 0.125, length = 1000;
     const Oscillator system =

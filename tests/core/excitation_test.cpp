@@ -10,7 +10,7 @@ namespace dinal::excitation_test {
 using namespace dinal::model;
 using namespace dinal::excitations;
 
-TEST_CASE("a block is filled with the single values", "[excitation]") {
+TEST_CASE("a block has the same values as single evaluations", "[excitation]") {
     std::vector<double> times;
     for (int i = -50; i < 300; ++i) {
         times.push_back(0.01 * i);
@@ -33,7 +33,7 @@ TEST_CASE("a block is filled with the single values", "[excitation]") {
     }
 }
 
-TEST_CASE("a block of a sine is good to the rounding of its times, however late", "[excitation]") {
+TEST_CASE("a block of a sine is accurate to the rounding of its times, however late", "[excitation]") {
     const double start = GENERATE(0.0, 1000.0, -1e6);
     const double omega = 2 * pi;
     const double amplitude = 3;
@@ -59,7 +59,7 @@ TEST_CASE("a block of a sine is good to the rounding of its times, however late"
     }
 }
 
-TEST_CASE("gain, sum, delay and window are what they are on paper", "[excitation]") {
+TEST_CASE("gain, sum, delay and window agree with their formulas", "[excitation]") {
     const auto terms = one_of_each();
     for (const Excitation& a : terms) {
         for (const Excitation& b : {terms[1], terms[3]}) {
@@ -110,7 +110,7 @@ TEST_CASE("the time from which M is constant is known for sums, gains and window
     }
 }
 
-TEST_CASE("a script is called in its own time, with the state, and only where it counts", "[excitation]") {
+TEST_CASE("a script is called at its delayed time, with the state, and not outside its window", "[excitation]") {
     const auto f =
         std::make_shared<Probe>([](double t, const State& s) { return t + 10 * s.theta + 100 * s.velocity; });
     const Excitation M = made(Scripted{.function = f, .feedback = true});
@@ -144,7 +144,7 @@ TEST_CASE("announced breaks of a script are delayed with it and repeat with its 
     CHECK(made(Scripted{.function = f, .period = 3}).next_break(0) == never);
 }
 
-TEST_CASE("both sides of a scripted jump are seen, whether it says > or >=", "[excitation]") {
+TEST_CASE("both sides of a scripted jump are found, whether it is written with > or >=", "[excitation]") {
     const bool inclusive = GENERATE(true, false);
     const double delay = GENERATE(0.0, 0.1, 1e3 + 0.1);
     const double at = GENERATE(0.0, 0.5, 0.3);
@@ -155,7 +155,7 @@ TEST_CASE("both sides of a scripted jump are seen, whether it says > or >=", "[e
     CHECK(M.value_after(b) == 1);
 }
 
-TEST_CASE("two sums that go on from the same one do not see each other's terms", "[excitation]") {
+TEST_CASE("two sums that extend the same one do not share their new terms", "[excitation]") {
     const Excitation common = made(Constant{1}) + made(Constant{2}) + made(Constant{4});
     const Excitation one = common + made(Constant{8}), other = common + made(Constant{16});
     const Excitation left = made(Constant{32}) + common, far_left = made(Constant{64}) + common;

@@ -49,7 +49,8 @@ Excitation feedback(std::function<double(double, const State&)> f) {
 
 }  // namespace
 
-TEST_CASE("a free decay: half cycles, the law of the extremes, and why it rests where it rests", "[explain]") {
+TEST_CASE("the story of a free decay has half cycles, the law of the extremes, and the reason for the rest",
+          "[explain]") {
     for (const Integrator& integrator : {Integrator{Spectral{}}, Integrator{Rk4{0.001}}}) {
         const std::string text = story(nondimensional(0, 0.167), {}, {0, 2 * pi}, {0, 5}, integrator);
         CHECK_THAT(text, Contains("There is no M: the motion is free."));
@@ -62,7 +63,7 @@ TEST_CASE("a free decay: half cycles, the law of the extremes, and why it rests 
     }
 }
 
-TEST_CASE("a free decay names the law that its frictions follow", "[explain]") {
+TEST_CASE("the story of a free decay states how its extremes shrink", "[explain]") {
     const double q = std::exp(-pi * 0.119 / std::sqrt(1 - 0.119 * 0.119));
     CHECK_THAT(story(nondimensional(0.119, 0), {}, {1, 0}, {0, 5}), Contains("Each extreme is 0.68624 ="));
     CHECK(q == Approx(0.68624).margin(5e-6));
@@ -75,7 +76,7 @@ TEST_CASE("a free decay names the law that its frictions follow", "[explain]") {
     CHECK_THAT(story(nondimensional(0, 0), {}, {0, 0}, {0, 5}), Contains("It stayed there"));
 }
 
-TEST_CASE("steady motion with stops: period, amplitude, lag, stops and the time stuck", "[explain]") {
+TEST_CASE("the story of a steady motion has its period, amplitude, lag, stops and the time stuck", "[explain]") {
     const Oscillator system = nondimensional(0, 0.836);
     for (const Integrator& integrator : {Integrator{Spectral{}}, Integrator{Rk4{0.001}}}) {
         // From t = n/2 + 0.45017942 to (n + 1)/2 + 0.12493764 it is stuck: 0.34951644 of the time.
@@ -104,7 +105,7 @@ TEST_CASE("the fundamental of Den Hartog's motion lags by 2.4555 rad", "[explain
     CHECK_THAT(text, Contains("It does not stop."));
 }
 
-TEST_CASE("a motion that grows says how", "[explain]") {
+TEST_CASE("the story of a growing motion states how it grows", "[explain]") {
     // pi - 4 gamma a period.
     CHECK_THAT(story(nondimensional(0, 0.167), harmonic(1, 2 * pi), {1, 0}, {0, 10}),
                Contains("The motion grows: amplitudes of") && Contains("periods of M, 2.4736 more each time."));
@@ -113,7 +114,7 @@ TEST_CASE("a motion that grows says how", "[explain]") {
                Contains("M is a feedback") && Contains("The motion grows") && Contains("times as much each time"));
 }
 
-TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
+TEST_CASE("a motion that has not become steady is not called steady", "[explain]") {
     // Beats of a lightly damped system: they last 1/(2 pi zeta) = 160 periods.
     const std::string beats = story(nondimensional(0.001, 0), harmonic(1, 2 * pi * 0.93), {0, 0}, {0, 40.7});
     CHECK_THAT(beats, !Contains("is steady"));
@@ -126,7 +127,7 @@ TEST_CASE("a motion that has not become steady is not called so", "[explain]") {
     CHECK_FALSE(recurrence(must_run(nondimensional(0, 1e-4), {}, {1, 0}, {0, 50}, Grid::none(), Spectral{}).events));
 }
 
-TEST_CASE("stick-slip under a ramp repeats itself while it is drawn along", "[explain]") {
+TEST_CASE("the story of stick-slip under a ramp has the advance in each period", "[explain]") {
     const ReferenceSystem& s = reference_system("spring-pulled block");
     const std::string text = story(s.oscillator, s.excitation, s.initial, {0, 10});
     CHECK_THAT(
@@ -137,7 +138,7 @@ TEST_CASE("stick-slip under a ramp repeats itself while it is drawn along", "[ex
     CHECK_THAT(text, Contains("It stops once in each period"));
 }
 
-TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
+TEST_CASE("a slip at a jump of M is explained by the jump", "[explain]") {
     const ReferenceSystem& s = reference_system("pulse on a resting mass at 20 T0");
     const std::string text = story(s.oscillator, s.excitation, s.initial, s.window);
     CHECK_THAT(text, Contains("M is constant from t = 20.125 on."));
@@ -147,7 +148,7 @@ TEST_CASE("a slip at a jump of M is told as one", "[explain]") {
     CHECK_THAT(text, Contains("stays at rest"));
 }
 
-TEST_CASE("a mass that never moves, and one that M cannot move any more", "[explain]") {
+TEST_CASE("the story says why a mass never moved, or cannot move any more", "[explain]") {
     const std::string unmoved = story(nondimensional(0, 0.5), harmonic(0.1, 12), {0.1, 0}, {0, 50});
     CHECK_THAT(unmoved, Contains("Nothing moved it until the end of the run, t = 50."));
     CHECK_THAT(unmoved, Contains("|M| never exceeds 0.1, which is too little to move it: it stays at rest."));
@@ -162,13 +163,13 @@ TEST_CASE("a mass that never moves, and one that M cannot move any more", "[expl
     CHECK_THAT(stopped, !Contains("steady"));
 }
 
-TEST_CASE("a limit cycle of a feedback repeats itself", "[explain]") {
+TEST_CASE("the story of a limit cycle under feedback calls it one", "[explain]") {
     const auto van_der_pol =
         feedback([](double, const State& y) { return 0.1 * (1 - y.theta * y.theta) * y.velocity; });
     CHECK_THAT(story(nondimensional(0, 0.05), van_der_pol, {0.5, 0}, {0, 60}), Contains("This is a limit cycle"));
 }
 
-TEST_CASE("a run that broke off says so, and when", "[explain]") {
+TEST_CASE("the story of a failed run says that it failed, and when", "[explain]") {
     const Oscillator system = nondimensional(0, 0.1);
     const auto interrupted = simulate(system, {harmonic(1, 5), {1, 0}}, {0, 100}, Grid::every(0.01), Spectral{},
                                       [](double t) { return t < 10; });
@@ -182,7 +183,7 @@ TEST_CASE("a run that broke off says so, and when", "[explain]") {
     CHECK_THAT(story(system, chatter, {0, 0}, {0, 5}), Contains("The run stopped early") && Contains("chatters"));
 }
 
-TEST_CASE("a run that broke off before anything moved the mass says that it was stuck", "[explain]") {
+TEST_CASE("the story of a run that failed before anything moved the mass says that it was stuck", "[explain]") {
     class Failing : public UserFunction {
     public:
         double value(double t, const State&) override { return t > 2 ? std::nan("") : 1.0; }
@@ -194,19 +195,19 @@ TEST_CASE("a run that broke off before anything moved the mass says that it was 
     CHECK_THAT(text, !Contains("moved off") && !Contains("in balance"));
 }
 
-TEST_CASE("far from t = 0 a load that grows past Re does not jump", "[explain]") {
+TEST_CASE("far from t = 0 a load that grows past Re is not taken for a jump", "[explain]") {
     const std::string text = story(nondimensional(0.05, 0.3), harmonic(1, 2 * pi), {1, 0}, {1e9, 1e9 + 2});
     CHECK_THAT(text, Contains("exceeded Re"));
     CHECK_THAT(text, !Contains("jumped"));
 }
 
-TEST_CASE("viscous damping alone ends a motion that breakaway can hold", "[explain]") {
+TEST_CASE("viscous damping alone brings a mass to rest if breakaway friction can hold it", "[explain]") {
     const std::string text = story(nondimensional(0.05, 0, 0.3), {}, {1, 0}, {0, 40});
     CHECK_THAT(text, Contains("until friction holds the"));
     CHECK_THAT(text, !Contains("never quite ends"));
 }
 
-TEST_CASE("the story does not need dense output, rows, or units of a certain size", "[explain]") {
+TEST_CASE("the story does not depend on dense output, rows, or the size of the units", "[explain]") {
     const Oscillator system = nondimensional(0, 0.836);
     const auto bare =
         simulate(system, {harmonic(1, 2 * pi), {1, 0}}, {0, 1000.2}, Grid::none(), Spectral{}, {}, {.dense = false});
@@ -240,7 +241,7 @@ TEST_CASE("the period of a sum is the shortest that all terms share", "[explain]
     CHECK(period_from(made(Scripted{.function = excitations::probe([](double t) { return t; }), .period = 3}), 0) == 3);
 }
 
-TEST_CASE("numbers for people have as many digits as say something", "[explain]") {
+TEST_CASE("numbers in the story have only significant digits", "[explain]") {
     CHECK(time_text(1.72366416, 1) == "1.7237");
     CHECK(time_text(999.45017942, 1) == "999.4502");
     CHECK(time_text(0, 1) == "0");

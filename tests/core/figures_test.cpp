@@ -27,7 +27,7 @@ Figure decay(std::size_t n) {
 
 }  // namespace
 
-TEST_CASE("what stands behind is drawn first, and as a band where it swings densely", "[plots]") {
+TEST_CASE("curves in the background are drawn first, and dense oscillations as a band", "[plots]") {
     for (const double swings : {5.0, 500.0}) {
         Figure figure = decay(20'000);
         std::vector<double> load;
@@ -50,7 +50,7 @@ TEST_CASE("what stands behind is drawn first, and as a band where it swings dens
     }
 }
 
-TEST_CASE("figures below others have their boxes below theirs, as wide", "[plots]") {
+TEST_CASE("figures below others have their boxes exactly below, of equal width", "[plots]") {
     std::vector<Figure> figures{decay(100), decay(100), decay(100)};
     figures[1].below = true;
     figures[1].y.limits = Interval{-123456, 123456};
@@ -62,7 +62,7 @@ TEST_CASE("figures below others have their boxes below theirs, as wide", "[plots
     CHECK(sheet.panels[2].bottom > sheet.panels[1].top);
 }
 
-TEST_CASE("boxes side by side stand on one line and are as high", "[plots]") {
+TEST_CASE("boxes side by side have equal heights and one base line", "[plots]") {
     std::vector<Figure> figures{decay(100), decay(100), decay(100)};
     figures[0].stuck = {{1, 2}};
     figures[0].x.label = "t";
@@ -109,7 +109,7 @@ TEST_CASE("a curve denser than the columns of a text is drawn as its envelope", 
     CHECK(with_envelopes({&figure, 1}, 2)[0].curves[0].size() == 7);
 }
 
-TEST_CASE("titles side by side stand on one line", "[plots]") {
+TEST_CASE("titles side by side have one base line", "[plots]") {
     std::vector<Figure> figures{decay(100), decay(100)};
     figures[0].title = "with a long legend";
     figures[0].curves.assign(9, figures[0].curves.front());
@@ -128,7 +128,7 @@ TEST_CASE("many entries of a legend are read downwards, in columns of one length
     CHECK(legend[9].x > legend[0].x);
 }
 
-TEST_CASE("a map has a bar of its colours, with a number between two of them or on each", "[plots]") {
+TEST_CASE("a colour bar has a number between two colours or on each", "[plots]") {
     const auto labels = [](std::vector<double> z) {
         Figure figure;
         figure.shades = std::make_shared<const Shades>(Shades{{0, 1, 2}, {0, 1}, std::move(z), "A"});
@@ -141,8 +141,7 @@ TEST_CASE("a map has a bar of its colours, with a number between two of them or 
     CHECK(labels({0, 0.1, 0.2, 0.3, 0.4, 0.5}).starts_with("0.0 at 0.0; 0.1 at 12.; "));  // of 64 colours that flow
 }
 
-TEST_CASE("lines have their names at their ends if that is asked for, outside of the box at its right edge",
-          "[plots]") {
+TEST_CASE("lines have their names at their ends on request, outside of the box at its right edge", "[plots]") {
     Figure figure = decay(10);
     figure.curves.assign(2, figure.curves.front());
     figure.curves[0].label = "first", figure.curves[1].label = "second";
@@ -161,7 +160,7 @@ TEST_CASE("lines have their names at their ends if that is asked for, outside of
     CHECK(std::fabs(named[1].right - ends.view.x(2)) < 1e-12);
 }
 
-TEST_CASE("an axis of several curves names them before their unit", "[plots]") {
+TEST_CASE("an axis of several curves has their names before their unit", "[plots]") {
     Figure figure = decay(10);
     figure.curves.assign(2, figure.curves.front());
     figure.curves[0].label = "θ", figure.curves[1].label = "M/k";

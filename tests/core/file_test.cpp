@@ -59,7 +59,7 @@ TEST_CASE("a file is read as it is, byte by byte", "[file]") {
     CHECK(read_file(folder.file("empty"))->empty());
 }
 
-TEST_CASE("what says nothing about its size is read to its end", "[file]") {
+TEST_CASE("a file of unknown size is read to its end", "[file]") {
     CHECK(read_file("/dev/null")->empty());
     const auto status = read_file("/proc/self/status");
     REQUIRE(status);
@@ -81,7 +81,7 @@ TEST_CASE("a fifo is read and written through", "[file]") {
     CHECK(fs::is_fifo(fifo));
 }
 
-TEST_CASE("what cannot be read is told with its name and the reason", "[file]") {
+TEST_CASE("a file that cannot be read is reported with its name and the reason", "[file]") {
     const TemporaryFolder folder;
     CHECK(read_file(folder.file("none")).error().sentence ==
           "cannot read '" + folder.file("none") + "': No such file or directory");
@@ -129,7 +129,7 @@ TEST_CASE("a written file holds exactly the text, in pieces small and large", "[
     CHECK(folder.count() == 1);
 }
 
-TEST_CASE("nothing is seen of a file before it is complete", "[file]") {
+TEST_CASE("a file is invisible until it is complete", "[file]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("run.csv");
     put_text(path, "old");
@@ -144,7 +144,7 @@ TEST_CASE("nothing is seen of a file before it is complete", "[file]") {
     CHECK(folder.count() == 1);
 }
 
-TEST_CASE("a disk that fills up leaves the old file and no rest", "[file]") {
+TEST_CASE("a full disk leaves the old file and no temporary file", "[file]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("run.csv");
     put_text(path, "old");
@@ -182,7 +182,7 @@ TEST_CASE("a device is written directly", "[file]") {
     CHECK(fs::is_character_file("/dev/null"));
 }
 
-TEST_CASE("an open descriptor is written where it stands", "[file]") {
+TEST_CASE("an open descriptor is written at its current position", "[file]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("redirected");
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT, 0600);
@@ -195,7 +195,7 @@ TEST_CASE("an open descriptor is written where it stands", "[file]") {
     CHECK_THAT(write_file("/dev/fd/987", "x").error().sentence, Contains("Bad file descriptor"));
 }
 
-TEST_CASE("what cannot be written is told at once with its name and the reason", "[file]") {
+TEST_CASE("a file that cannot be written is reported at once with its name and the reason", "[file]") {
     const TemporaryFolder folder;
     CHECK(OutputFile::create(folder.path()).error().sentence ==
           "cannot write '" + folder.path().string() + "': it is a folder, not a file");
@@ -264,7 +264,7 @@ TEST_CASE("a file name with blanks, quotes and letters beyond ASCII is only a na
     CHECK(text_of(path) == "x");
 }
 
-TEST_CASE("who is told to stop writes no further, and the old file stays", "[file]") {
+TEST_CASE("a writer that is told to stop leaves the old file", "[file]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("rows.csv");
     REQUIRE(write_file(path, "old"));
@@ -276,7 +276,7 @@ TEST_CASE("who is told to stop writes no further, and the old file stays", "[fil
     CHECK(*read_file(path) == "old");
 }
 
-TEST_CASE("who is told to stop reads no further", "[file]") {
+TEST_CASE("a reader that is told to stop reads no further", "[file]") {
     std::string text = "t,theta\n";
     for (int i = 0; i < 100'000; ++i) text += "1,2\n";
     int questions = 0;

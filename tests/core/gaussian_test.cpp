@@ -29,7 +29,7 @@ std::string refusal(const Excitation& M, const Window& window, const Integrator&
 
 }  // namespace
 
-TEST_CASE("a gaussian is what it is on paper, and exactly 0 far away", "[gaussian]") {
+TEST_CASE("a gaussian agrees with its formula, and is exactly 0 far away", "[gaussian]") {
     const Excitation M = made(Gaussian{3, 2, 0.5});
     CHECK(M.value(2) == 3);
     CHECK(M.value(2.5) == near(3 * std::exp(-0.5)));
@@ -48,7 +48,7 @@ TEST_CASE("a gaussian is what it is on paper, and exactly 0 far away", "[gaussia
     CHECK(narrow.value(narrow.constant_from()) == 0);
 }
 
-TEST_CASE("how far one may look without missing a bump", "[gaussian]") {
+TEST_CASE("the longest step that does not miss a bump depends on the distance from it", "[gaussian]") {
     const double width = 0.01, spacing = 0.1;
     const double close = width / 2 / spacing;  // a look of this length has samples half a width apart
     const Excitation M = made(Gaussian{1, 5, width});
@@ -67,7 +67,7 @@ TEST_CASE("how far one may look without missing a bump", "[gaussian]") {
     CHECK(made(Harmonic{1, 1, 0}).view(0, spacing) == never);
 }
 
-TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on", "[long][gaussian][spectral]") {
+TEST_CASE("a load that grows from zero moves a mass at rest from its first moment on", "[long][gaussian][spectral]") {
     // From 1e-308 down numbers lose their digits, and no M is smooth there.
     for (const double width : {0.01, 0.06}) {
         const auto bump = probe([width](double t) { return std::exp(-0.5 * std::pow((t - 4.45) / width, 2)); });
@@ -79,7 +79,8 @@ TEST_CASE("a load that grows out of nothing moves a mass at rest from nothing on
     }
 }
 
-TEST_CASE("a method with a step refuses what it would step over, and says which step will do", "[gaussian][rk4]") {
+TEST_CASE("an integrator with a fixed step refuses a bump that it would miss, and names a step that is short enough",
+          "[gaussian][rk4]") {
     const Excitation M = made(Constant{1}) + made(Gaussian{1, 5, 0.01}) + made(Gaussian{1, 8, 0.002});
     CHECK(refusal(M, {0, 7}, Rk4{0.01}) ==
           "h = 0.01 is too long for the narrow bump of M between t = 4.9 and 5.1: use h <= 0.004995, or "

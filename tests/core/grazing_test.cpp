@@ -33,7 +33,7 @@ ReferenceSystem grazing(double friction, double depth) {
 
 }  // namespace
 
-TEST_CASE("a velocity that dips through zero and back within a step turns twice", "[exact][spectral][rk4][grazing]") {
+TEST_CASE("a velocity that passes zero and returns within a step makes two turns", "[exact][spectral][rk4][grazing]") {
     const Integrator integrator = GENERATE(as<Integrator>{}, Exact{}, Spectral{}, Rk4{0.005});
     const bool spectral = !std::holds_alternative<Rk4>(integrator);  // or exact
     for (const double friction : {0.0, 0.01}) {

@@ -7,13 +7,13 @@ namespace dinal::harmless_test {
 
 using dinal::text::harmless;
 
-TEST_CASE("lines, tabs, letters and colours pass", "[text]") {
+TEST_CASE("lines, tabs, letters and colours are kept", "[text]") {
     for (const char* text : {"a\nb\tc\n", "θ ≤ 1", "\x1b[31m^^^\x1b[0m", "\x1b[1;4m(\x1b[m", "\x1b[90mgrey"}) {
         CHECK(harmless(text) == text);
     }
 }
 
-TEST_CASE("what moves the cursor, names the window, hides or blinks does not", "[text]") {
+TEST_CASE("sequences that move the cursor, rename the window, hide text or blink are removed", "[text]") {
     CHECK(harmless("\x1b]0;title\x07") == "?]0;title?");
     CHECK(harmless("\x1b[2J\x1b[H") == "?[2J?[H");
     CHECK(harmless("\x1b[8mhidden") == "?[8mhidden");

@@ -5,7 +5,7 @@
 
 namespace dinal::hybrid_test {
 
-TEST_CASE("systems of all kinds by lot agree with an independent integrator, event by event", "[hybrid][mixed]") {
+TEST_CASE("random systems of all kinds agree with an independent integrator, event by event", "[hybrid][mixed]") {
     truth::check_random_mixed(60);
 }
 

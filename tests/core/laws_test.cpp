@@ -56,7 +56,7 @@ Oscillator with_law(const Friction& law, double damping = 0) {
 
 }  // namespace
 
-TEST_CASE("the energy adds up under every friction law, and rows tell its friction", "[laws][energy]") {
+TEST_CASE("the energy adds up under every friction law, and rows contain its friction", "[laws][energy]") {
     for (const LawCase& c : law_cases()) {
         CAPTURE(c.name);
         const Run run =
@@ -76,7 +76,7 @@ TEST_CASE("the energy adds up under every friction law, and rows tell its fricti
     }
 }
 
-TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[laws]") {
+TEST_CASE("a law with equal numbers in both directions is Coulomb's, bit for bit", "[laws]") {
     const Oscillator plain = system_of({.inertia = 1, .stiffness = 1, .kinetic_friction = 0.1, .breakaway = 0.2});
     const Oscillator twice = with_law(AsymmetricCoulomb{.forward = {0.1, 0.2}, .backward = {0.1, 0.2}});
     for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}}) {
@@ -87,7 +87,7 @@ TEST_CASE("a law with the same numbers each way is Coulomb's, bit for bit", "[la
     }
 }
 
-TEST_CASE("the story names both sides of a friction, and no closed form that does not hold", "[laws][explain]") {
+TEST_CASE("the story names both sides of a friction law, and no closed form that does not hold", "[laws][explain]") {
     const auto story = [](const Friction& law) {
         const Oscillator system = with_law(law);
         const Excitation M;

@@ -80,7 +80,7 @@ TEST_CASE("a belt carries the mass against the wall and slides along it", "[wall
     }
 }
 
-TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
+TEST_CASE("a belt that reverses takes a leaning mass off the wall", "[walls][belt]") {
     // Pressed with 0.1; the belt holds it with 0.3 on the way in, and takes it off on the way back.
     model::Drive drive{constant(0.1)};
     drive.belts = {harmonic(0.5, 1)};
@@ -91,7 +91,7 @@ TEST_CASE("a belt that turns round while the mass leans", "[walls][belt]") {
     CHECK(run->events[0].t == within(pi, 1e-12));
 }
 
-TEST_CASE("states go on while the mass leans, and events of the user see impacts", "[walls][states]") {
+TEST_CASE("states are integrated while the mass leans, and user events see impacts", "[walls][states]") {
     model::Drive drive{{}, {0, 1}};
     drive.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});
     drive.events.push_back(
@@ -106,7 +106,7 @@ TEST_CASE("states go on while the mass leans, and events of the user see impacts
     CHECK(of_kind(off, EventKind::slip)[0].t == within(2, 1e-12));
 }
 
-TEST_CASE("what begins at a wall stands there, or hits it at once", "[walls]") {
+TEST_CASE("a mass that begins at a wall rests there, or hits it at once", "[walls]") {
     for (const auto& [integrator, tolerance] : methods_at_walls) {
         const Run pressed = must_run(walled({-1, 1, 0.5}), constant(1), {1, 0}, {0, 5}, Grid::every(1), integrator);
         CHECK(pressed.events.empty());
@@ -134,7 +134,7 @@ TEST_CASE("a load that only touches the limit does not take the mass off the wal
     }
 }
 
-TEST_CASE("the story tells of walls, impacts and rest at a wall", "[walls][explain]") {
+TEST_CASE("the story describes walls, impacts and rest at a wall", "[walls][explain]") {
     const Oscillator ball = walled({0, none, 0.5});
     const Excitation M = constant(-2) + ramp(1, 8);
     const Run run = must_run(ball, M, {1, 0}, {0, 12}, Grid::every(0.5), Spectral{});

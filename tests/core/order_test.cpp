@@ -47,7 +47,7 @@ void for_each_run(const std::function<void(const ReferenceSystem&, const Integra
 
 }  // namespace
 
-TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dopri5][dinal1989][rows]") {
+TEST_CASE("run.at has the values that a row at that time would have", "[spectral][rk4][dopri5][dinal1989][rows]") {
     for_each_run([](const ReferenceSystem& s, const Integrator& integrator, double /*h*/) {
         const double dt = (s.window.end - s.window.start) / 61.3;
         const Run with_rows = must_run(s, Grid::every(dt), integrator);
@@ -62,7 +62,7 @@ TEST_CASE("run.at says what a row there would have said", "[spectral][rk4][dopri
     });
 }
 
-TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dopri5][dinal1989][rows][long]") {
+TEST_CASE("the requested rows do not change the motion", "[spectral][rk4][dopri5][dinal1989][rows][long]") {
     for_each_run([](const ReferenceSystem& s, const Integrator& integrator, double h) {
         const Run none = must_run(s, Grid::none(), integrator);
         const Run some = must_run(s, Grid::every(7.3 * h), integrator);
@@ -83,7 +83,7 @@ TEST_CASE("the rows asked for do not change the motion", "[spectral][rk4][dopri5
     });
 }
 
-TEST_CASE("an affine step is the step of the four stages of the classical method") {
+TEST_CASE("an affine step equals the four stages of the classical method") {
     const double k = 4, C = 0.3, h = 0.1;
     const State begin{0.7, -0.4};
     const double at_begin = 0.2, in_the_middle = 0.5, at_end = 0.9;  // the torques, by the inertia

@@ -49,8 +49,7 @@ TEST_CASE("the report's system has the values that DINAL printed", "[oscillator]
     CHECK(system->characteristic_torque({-2, 0}) == 2 * 39.48);
 }
 
-TEST_CASE("parameters whose derived values leave the doubles are refused, extreme ones that do not are taken",
-          "[oscillator]") {
+TEST_CASE("parameters with derived values that overflow are refused, other extreme ones are accepted", "[oscillator]") {
     CHECK_THAT(complaint({.inertia = 1e-300, .stiffness = 1e300}), Contains("too far apart"));
     CHECK_THAT(complaint({.inertia = 1e300, .stiffness = 1e-300}), Contains("too far apart"));
     const auto tiny = Oscillator::make({.inertia = 1e-200, .stiffness = 1e-200, .damping = 2e-200});

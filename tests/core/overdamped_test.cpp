@@ -49,7 +49,7 @@ const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = omega}).
 
 }  // namespace
 
-TEST_CASE("a very overdamped motion of a million natural periods has its digits", "[exact]") {
+TEST_CASE("a very overdamped motion over a million natural periods keeps its digits", "[exact]") {
     constexpr double start = 0.75, end = 6 * std::numbers::pi / omega;
     const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping});
     const Run run = must_run(system, M, {start, 0}, {0, end}, Grid::every(end / 50), Exact{});
@@ -62,7 +62,7 @@ TEST_CASE("a very overdamped motion of a million natural periods has its digits"
     }
 }
 
-TEST_CASE("a very overdamped mass slips when M passes Re, and stops when it must", "[exact]") {
+TEST_CASE("a very overdamped mass slips when M passes Re, and stops at the right time", "[exact]") {
     // The velocity is soon above its own rounding, which is 1e-6 of that of theta: the slip was told when M was 3e-9
     // past Re.
     constexpr double friction = 0.1;
@@ -103,7 +103,7 @@ TEST_CASE("a very overdamped mass follows a line in a few arcs", "[exact]") {
     }
 }
 
-TEST_CASE("an overdamped motion that comes from afar has its digits when it is near", "[exact][razor]") {
+TEST_CASE("an overdamped motion that comes from afar keeps its digits", "[exact][razor]") {
     // theta = Rd/k + a free motion; it never turns.
     const double I = 0.12, C = 1.25, k = 1.6, Rd = 1.8;
     const long double delta = static_cast<long double>(C) / (2 * static_cast<long double>(I)),
@@ -127,7 +127,7 @@ TEST_CASE("an overdamped motion that comes from afar has its digits when it is n
     }
 }
 
-TEST_CASE("a mass at its limit under a load that decays for ever waits without looking each moment", "[exact][razor]") {
+TEST_CASE("a mass at its limit under a load that decays for ever is not checked at every moment", "[exact][razor]") {
     // It creeps to Rd/k = Re/k; the exponential is 1e-44 when it is there, and then 0.
     const auto system = system_of({.inertia = 0.12106475830078126,
                                    .stiffness = 1.5738525390625,

@@ -132,7 +132,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("any words stand in a picture as they were written", "[painter]") {
+TEST_CASE("any text appears in a picture as it was written", "[painter]") {
     for (const char* words : {"I θ″ + C θ′", "a\\ b", "x\\n", "100 %s", "@a_b^{c} ~", "`ls` $(ls)"}) {
         Figure figure = wave();
         figure.title = figure.x.label = figure.curves[0].label = words;
@@ -146,7 +146,7 @@ TEST_CASE("any words stand in a picture as they were written", "[painter]") {
     CHECK(svg(figure).find(">&lt;/text&gt;&lt;script&gt;\uFFFD &#39;&quot;&amp;</text>") != std::string::npos);
 }
 
-TEST_CASE("a picture says what it shows to those who do not see it", "[painter]") {
+TEST_CASE("a picture has a description for readers who cannot see it", "[painter]") {
     Figure figure = wave();
     figure.stuck = {{10, 20}};
     const std::string picture = svg(figure);
@@ -189,7 +189,7 @@ TEST_CASE("the title of a picture of many curves names its axes", "[painter]") {
     CHECK(title_of({&figure, 1}) == "θ, θ, θ and 1 more over t");
 }
 
-TEST_CASE("parts of pictures on one page have different names, and no other differences", "[painter]") {
+TEST_CASE("pictures on one page have different element ids, and no other differences", "[painter]") {
     const std::string picture = svg(wave());
     CHECK(picture == svg(wave()));
     Figure other = wave();
@@ -230,7 +230,7 @@ TEST_CASE("an SVG of many random points or lines is smaller than 200 kB", "[pain
     }
 }
 
-TEST_CASE("one point of a million that stands out reaches the top", "[painter]") {
+TEST_CASE("one outlier among a million points reaches the top", "[painter]") {
     std::vector<double> x, y;
     for (int i = 0; i < 1'000'000; ++i) {
         x.push_back(i);
@@ -245,7 +245,7 @@ TEST_CASE("one point of a million that stands out reaches the top", "[painter]")
     CHECK(plane.ink({-0.9, 0.9}, {2.2, 6.8}) > 0.005);
 }
 
-TEST_CASE("a line is drawn where its numbers are, on all axes", "[painter]") {
+TEST_CASE("a line is drawn at its coordinates, on all axes", "[painter]") {
     const Dots straight(curve_of({0, 10}, {-1, 1}));
     CHECK(straight.at(2.5, -0.5) == blue);
     CHECK(straight.at(2.5, -0.3) == white);
@@ -265,7 +265,7 @@ TEST_CASE("a point between gaps is drawn as a dot, and so is a curve shorter tha
     CHECK(Dots(curve_of({1, 1 + 1e-15}, {1, 1 + 1e-15})).at(1, 1) == blue);
 }
 
-TEST_CASE("an area reaches to its other edge, and is interrupted where one of them is", "[painter]") {
+TEST_CASE("an area extends to its other edge, and has a gap if either edge has one", "[painter]") {
     Figure figure = curve_of({0, 1, 2, 3, 4, 5, 6, 7, 8}, {3, 3, nan, 3, 3, 3, 3, 3, 3}, Style::fill);
     const Dots to_zero(figure);
     CHECK(to_zero.at(5.7, 0.2) != white);
@@ -278,7 +278,7 @@ TEST_CASE("an area reaches to its other edge, and is interrupted where one of th
     for (const double x : {1.7, 2.3, 4.7, 5.3}) CHECK(between.at(x, 2.2) == white);
 }
 
-TEST_CASE("what leaves the window by far is cut where it does", "[painter]") {
+TEST_CASE("curves far outside the window are clipped", "[painter]") {
     for (const double far : {100.0, 1e12, 1e300}) {
         Figure figure = curve_of({0, 1, 2, 3, 4}, {0.5, far, 0.5, -far, 0.5});
         figure.y.limits = Interval{0, 1};
@@ -298,7 +298,7 @@ TEST_CASE("what leaves the window by far is cut where it does", "[painter]") {
     CHECK(dots.at(1.77, 0.9) != white);
 }
 
-TEST_CASE("a crowd of points shows where it is denser", "[painter]") {
+TEST_CASE("a crowd of points is darker in denser places", "[painter]") {
     // 40000 points, three in four of them in the left tenth.
     std::vector<double> x, y;
     Random random;
@@ -311,7 +311,7 @@ TEST_CASE("a crowd of points shows where it is denser", "[painter]") {
     CHECK(dots.ink({0.2, 0.99}, {0.01, 0.99}) > 0.02);
 }
 
-TEST_CASE("a map has the shade of each value at its place", "[painter]") {
+TEST_CASE("a map has the shade of each value at its coordinates", "[painter]") {
     Figure figure;
     figure.shades = std::make_shared<Shades>(Shades{{0, 1}, {1, 10, 100}, {0, 1, 2, 3, nan, 4}});
     figure.y.logarithmic = true;
@@ -324,7 +324,7 @@ TEST_CASE("a map has the shade of each value at its place", "[painter]") {
     CHECK((empty == white || empty == 0xA8A8A8));  // stripes
 }
 
-TEST_CASE("the colours of a map flow, and where a positive quantity is 0 there are stripes", "[painter]") {
+TEST_CASE("the colours of a map are continuous, and zeros of a positive quantity are striped", "[painter]") {
     Figure figure;
     figure.shades = std::make_shared<Shades>(Shades{{0, 1}, {0, 1}, {0, 0.5, 1, 2.5}});
     const Dots dots(figure);
@@ -335,7 +335,7 @@ TEST_CASE("the colours of a map flow, and where a positive quantity is 0 there a
     CHECK((nothing == 0xECECEC || nothing == 0xA8A8A8));
 }
 
-TEST_CASE("marks, the dead zone and bars for what is stuck stand at their places", "[painter]") {
+TEST_CASE("marks, the dead zone and bars for sticking are at their coordinates", "[painter]") {
     Figure figure = curve_of({-1, 1}, {-1, 1});
     figure.marks = {{0.5, -0.5, MarkKind::end}};
     figure.dead_zone = Interval{-0.6, -0.2};
@@ -364,7 +364,7 @@ TEST_CASE("no line joins a word of the legend with its sample", "[painter]") {
     }
 }
 
-TEST_CASE("the size of the sheet is what was asked, in cm", "[painter]") {
+TEST_CASE("the size of the sheet is the requested one, in cm", "[painter]") {
     const Figure figure = wave();
     const std::string picture = drawn(figure, PictureKind::svg, {12.7, 5.08});
     CHECK(picture.find("width=\"480px\" height=\"192px\"") != std::string::npos);  // 5 and 2 inches of 96 pixels
@@ -416,7 +416,7 @@ TEST_CASE("a phase plane that is flat or steep gets a sheet that fits it", "[pai
     CHECK(height() >= round - 1);
 }
 
-TEST_CASE("a drawing ends when it is told to", "[painter]") {
+TEST_CASE("drawing ends on request", "[painter]") {
     int calls = 0;
     const Figure figure = spiral(100'000);
     const auto picture = paint({&figure, 1}, PictureKind::svg, {}, [&calls] { return ++calls < 10; });

@@ -21,14 +21,14 @@ std::size_t width(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("the progress line tells label, fraction, count, rate and time left", "[progress]") {
+TEST_CASE("the progress line has label, fraction, count, rate and time left", "[progress]") {
     CHECK(progress_text(sweep, 79, Letters::ascii) ==
           "sweep  42% [############..................] 42 of 100, 3.2/s, 18 s left");
     CHECK(progress_text(sweep, 79, Letters::utf8) ==
           "sweep  42% ▕████████████▌                 ▏ 42 of 100, 3.2/s, 18 s left");
 }
 
-TEST_CASE("what does not fit goes, the least important first", "[progress]") {
+TEST_CASE("parts that do not fit are omitted, the least important first", "[progress]") {
     CHECK(progress_text(sweep, 60, Letters::ascii) == "sweep  42% [#######............] 42 of 100, 3.2/s, 18 s left");
     CHECK(progress_text(sweep, 50, Letters::ascii) == "sweep  42% [########............] 3.2/s, 18 s left");
     CHECK(progress_text(sweep, 36, Letters::ascii) == "sweep  42% [##....] 3.2/s, 18 s left");
@@ -61,7 +61,7 @@ TEST_CASE("a fraction is rounded down, and the bar with it", "[progress]") {
     CHECK(progress_text(almost, 30, Letters::ascii) == "sweep 100% [#######] 18 s left");
 }
 
-TEST_CASE("without a known end there are only the count and the rate", "[progress]") {
+TEST_CASE("without a known end the progress line has only the count and the rate", "[progress]") {
     const ProgressFacts endless{"", -1, "42", "3.2/s", 0};
     CHECK(progress_text(endless, 79, Letters::utf8) == "42, 3.2/s");
     CHECK(progress_text(endless, 6, Letters::utf8) == "3.2/s");
@@ -76,7 +76,7 @@ TEST_CASE("a label can neither steer the terminal nor break the line", "[progres
     CHECK(progress_text(odd, 60, Letters::ascii).substr(0, 13) == "Deltatheta ? ");
 }
 
-TEST_CASE("durations are told as on a clock", "[progress]") {
+TEST_CASE("durations are written as on a clock", "[progress]") {
     CHECK(duration_text(0) == "0 s");
     CHECK(duration_text(0.2) == "1 s");
     CHECK(duration_text(59.5) == "1:00");

@@ -118,7 +118,7 @@ TEST_CASE("a load that passes the limit between two samples releases", "[razor]"
     CHECK(run.events[0].t == within(1.0015, tolerance_of(integrator, 1e-9) + 1e-13));
 }
 
-TEST_CASE("a release is at the moment when M passes the limit, to rounding", "[razor]") {
+TEST_CASE("a release is at the time when M passes the limit, to rounding", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.25, 0.5);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.01}, Rk4{0.0137}, Rk4{0.001}}) {
@@ -165,7 +165,7 @@ TEST_CASE("a mass at rest stays exactly where it is, for ever", "[razor]") {
     CHECK(run.at(777.77)->velocity == 0);
 }
 
-TEST_CASE("a jump of M exactly at a turn: the mass goes on from there under the new load", "[razor]") {
+TEST_CASE("after a jump of M exactly at a turn the mass moves on under the new load", "[razor]") {
     const Integrator integrator = either();
     CAPTURE(integrator.index());
     // Free with gamma = 0.2 from theta = 1: a turn at t = 0.5, theta = -0.6.
@@ -224,7 +224,7 @@ TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth 
     }
 }
 
-TEST_CASE("a break of M at t_start is the load from the beginning", "[razor]") {
+TEST_CASE("a break of M at t_start acts from the beginning", "[razor]") {
     const Oscillator system = nondimensional(0.1, 0.1);
     for (const Integrator& integrator :
          std::vector<Integrator>{Exact{}, Spectral{}, Rk4{0.001}, Dinal1989{.h = 0.001}}) {
@@ -262,7 +262,7 @@ TEST_CASE("breaks closer together than a step, and than rounding, are all obeyed
     CHECK(std::fabs(spike.rows(0, 1)) < 1e-11);
 }
 
-TEST_CASE("a function that is not a number ends the run with what there is", "[razor]") {
+TEST_CASE("a function that returns nan ends the run, which keeps its rows", "[razor]") {
     class Breaking : public UserFunction {
     public:
         double value(double t, const State&) override { return t < 1 ? 0.5 : std::numeric_limits<double>::quiet_NaN(); }
@@ -318,7 +318,7 @@ TEST_CASE("a decay whose last extreme is Re/k ends there", "[razor]") {
     }
 }
 
-TEST_CASE("a run knows whether it began stuck, whatever came later", "[razor]") {
+TEST_CASE("a run knows whether it began stuck, whatever happened later", "[razor]") {
     const Oscillator system = nondimensional(0.05, 0.2, 0.3);
     const Integrator integrator = either();
     CAPTURE(integrator.index());

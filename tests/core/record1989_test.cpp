@@ -45,7 +45,7 @@ Run small_run() {
 
 }  // namespace
 
-TEST_CASE("a run is recorded as time and five angles behind the number of rows", "[record1989]") {
+TEST_CASE("a run is recorded as the number of rows, then time and five angles for each", "[record1989]") {
     const TemporaryFolder folder;
     REQUIRE(write_record1989(folder.file("x.dat"), small_run(), system_with_stiffness_4()));
     CHECK(text_of(folder.file("x.dat")) == "2\n0 1 0 0.5 -0 0\n0.1 0.75 -1.5 0.25 0.25 0.375\n");
@@ -87,12 +87,12 @@ TEST_CASE("a record reads back bit by bit and is saved again as it was", "[recor
     CHECK(text_of(folder.file("b.dat")) == text_of(folder.file("a.dat")));
 }
 
-TEST_CASE("the names of the columns say what they are divided by", "[record1989]") {
+TEST_CASE("the names of the columns state by what they are divided", "[record1989]") {
     CHECK(record1989_names() == std::vector<std::string>{"t", "theta", "velocity_over_omega0", "M_over_k",
                                                          "friction_over_k", "damping_over_k"});
 }
 
-TEST_CASE("a record without rows is NPUNT = 0", "[record1989]") {
+TEST_CASE("a record without rows has NPUNT = 0", "[record1989]") {
     const TemporaryFolder folder;
     REQUIRE(write_record1989(folder.file("x.dat"), Eigen::MatrixXd(0, 6)));
     CHECK(text_of(folder.file("x.dat")) == "0\n");
@@ -108,7 +108,7 @@ TEST_CASE("numbers are read in all forms that Fortran writes", "[record1989]") {
     CHECK(table.values.row(1) == Eigen::RowVectorXd{{1e-300, 2e300, 0.5, -1e-3, 7, 1}});
 }
 
-TEST_CASE("a row may go on in the next lines and repeat a value", "[record1989]") {
+TEST_CASE("a row may continue in the next lines and use repeat counts", "[record1989]") {
     const Table table = parsed("2\n 1 2 3\n 4\n\n 5 6\n 2*0.5 3*-1D0\n 9\n");
     CHECK(table.values.row(0) == Eigen::RowVectorXd{{1, 2, 3, 4, 5, 6}});
     CHECK(table.values.row(1) == Eigen::RowVectorXd{{.5, .5, -1, -1, -1, 9}});
@@ -138,7 +138,7 @@ TEST_CASE("a row without six numbers is refused with its line", "[record1989]") 
     CHECK_THAT(fault("1\n18446744073709551615*0\n"), Contains("more than six"));
 }
 
-TEST_CASE("a record with what is no finite number is refused with its line and column", "[record1989]") {
+TEST_CASE("a record with a value that is not a finite number is refused with its line and column", "[record1989]") {
     CHECK(fault("1\n0 abc 0 0 0 0\n") == "x.dat:2: theta is 'abc', not a number");
     CHECK(fault("1\n0 0 0\n*** 0 0\n") == "x.dat:3: M_over_k is '***', not a number");
     CHECK_THAT(fault("1\n0 NaN 0 0 0 0\n"), Contains("x.dat:2: theta is 'NaN', but only finite numbers"));
@@ -150,7 +150,7 @@ TEST_CASE("a record with what is no finite number is refused with its line and c
     }
 }
 
-TEST_CASE("a file that is no record is refused by name", "[record1989]") {
+TEST_CASE("a file that is not a record is refused by name", "[record1989]") {
     using namespace std::string_view_literals;
     const TemporaryFolder folder;
     CHECK_THAT(fault("1\n0 0 0 0 0 0\0\n"sv), Contains("x.dat:2: there is a NUL byte"));

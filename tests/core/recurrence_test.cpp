@@ -58,7 +58,8 @@ TEST_CASE("a motion is steady when it is within a part in ten thousand of its li
     CHECK_FALSE(recurrence(settling_turns(29, 1, 0.7))->steady);
 }
 
-TEST_CASE("a motion repeats itself from where it is within a thousandth of the period before", "[recurrence]") {
+TEST_CASE("a motion is periodic from the first turn that is repeated to a thousandth one period later",
+          "[recurrence]") {
     const auto events = settling_turns(40, 1, 0.5);
     const auto found = recurrence(events);
     REQUIRE(found);
@@ -67,13 +68,13 @@ TEST_CASE("a motion repeats itself from where it is within a thousandth of the p
     CHECK(found->since == events[10].t);
 }
 
-TEST_CASE("a motion that changes by a tenth in a period does not repeat itself", "[recurrence]") {
+TEST_CASE("a motion that changes by a tenth in a period is not periodic", "[recurrence]") {
     // It changes by 0.19 q^n part; what is left of that must be below a tenth, too.
     CHECK(recurrence(settling_turns(12, 0.05, 0.9)));
     CHECK_FALSE(recurrence(settling_turns(12, 0.5, 0.9)));
 }
 
-TEST_CASE("the trend of the last swings counts differences above a part in a thousand million", "[recurrence]") {
+TEST_CASE("the trend of the last swings ignores differences below a part in a thousand million", "[recurrence]") {
     const auto trend = [](double step) {
         return swings(half_cycles({1, 1 + step, 1 + 2 * step, 1 + 3 * step}), 1).trend;
     };

@@ -76,7 +76,7 @@ const BranchPoint& fold_of(const ResponseCurve& curve, int which) {
 
 }  // namespace
 
-TEST_CASE("the folds of Duffing's response are where shooting finds them, and have a multiplier of 1", "[response]") {
+TEST_CASE("the folds of Duffing's response agree with shooting, and have a multiplier of 1", "[response]") {
     const double C = 0.1;
     const Oscillator system = duffing(C, 0, 0);
     const CurveQuestion question{.family = [&](double f) { return at_frequency(system, f); },
@@ -120,7 +120,7 @@ TEST_CASE("the folds of Duffing's response are where shooting finds them, and ha
     }
 }
 
-TEST_CASE("with dry friction a motion stays on its branch before the fold and leaves it behind", "[response]") {
+TEST_CASE("with dry friction a motion stays on its branch before the fold and leaves it after the fold", "[response]") {
     const Oscillator system = duffing(0.05, 0.1, 0.1);
     const CurveQuestion question{.family = [&](double f) { return at_frequency(system, f); },
                                  .values = evenly(0.19, 0.38, 8)};

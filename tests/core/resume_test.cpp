@@ -35,7 +35,7 @@ void check_like_whole(const Run& parts, const Run& whole, const ReferenceSystem&
 
 }  // namespace
 
-TEST_CASE("a run in three parts is the run in one, for every reference system", "[resume][spectral][rk4]") {
+TEST_CASE("a run in three parts equals the run in one, for every reference system", "[resume][spectral][rk4]") {
     for (const ReferenceSystem& s : reference_systems()) {
         const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
         const double length = s.window.end - s.window.start;
@@ -59,7 +59,7 @@ TEST_CASE("a run in three parts is the run in one, for every reference system", 
     }
 }
 
-TEST_CASE("a run that is stopped among many rows between two events goes on as if it had not been", "[resume]") {
+TEST_CASE("a run that is stopped among many rows between two events continues as if it had not been", "[resume]") {
     const Oscillator system = nondimensional(0.01, 0);
     const Grid rows = Grid::every(1e-5);
     const auto first = simulate(system, {{}, {1, 0}}, {0, 2.5}, rows, Exact{}, [](double t) { return t < 0.9; });
@@ -79,7 +79,7 @@ TEST_CASE("a run that is stopped among many rows between two events goes on as i
     CHECK(both->events.size() == whole.events.size());
 }
 
-TEST_CASE("a run goes on from wherever it was stopped, also from the very moment of a slip", "[long][resume]") {
+TEST_CASE("a run can be continued from any time, also from the very moment of a slip", "[long][resume]") {
     const Oscillator system = nondimensional(0.01, 0.3);
     const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = 1}).value();
     const Run whole = must_run(system, M, {0, 0}, {0, 400}, Grid::every(1), Spectral{});
@@ -100,7 +100,7 @@ TEST_CASE("a run goes on from wherever it was stopped, also from the very moment
     }
 }
 
-TEST_CASE("a mass that is stuck and goes on into a load slips as if there had been no break", "[resume]") {
+TEST_CASE("a stuck mass slips in a continued run as in an uninterrupted one", "[resume]") {
     const Oscillator system = nondimensional(0, 0.2, 0.3);
     const Excitation late = Excitation::make(Step{.amplitude = 0.9, .at = 5}).value();
     for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
@@ -118,7 +118,7 @@ TEST_CASE("a mass that is stuck and goes on into a load slips as if there had be
     }
 }
 
-TEST_CASE("a run that goes on from the very time of a turn has that turn once", "[resume][spectral]") {
+TEST_CASE("a run continued from the time of a turn has that turn once", "[resume][spectral]") {
     for (int i = 0; i < 6; ++i) {
         const Oscillator system = nondimensional(i % 3 == 0 ? 0 : 0.07, i % 2 == 0 ? 0 : 0.1);
         const Excitation M = Excitation::make(Sawtooth{.amplitude = 1.3, .period = 0.9 + 0.07 * i}).value();
@@ -134,7 +134,7 @@ TEST_CASE("a run that goes on from the very time of a turn has that turn once", 
     }
 }
 
-TEST_CASE("a run with very many rows at rest stops when it is told to, and goes on", "[resume]") {
+TEST_CASE("a run with very many rows at rest stops on request, and can be continued", "[resume]") {
     const Oscillator system = nondimensional(0, 0.5);
     const Excitation load = harmonic(0.3, 1);  // cannot move it
     const auto part =
@@ -151,7 +151,7 @@ TEST_CASE("a run with very many rows at rest stops when it is told to, and goes 
     CHECK(all->rows == whole.rows);
 }
 
-TEST_CASE("a run that goes on from what is a row of all but for its rounding has that row once", "[resume]") {
+TEST_CASE("a run continued from the time of a row to rounding has that row once", "[resume]") {
     const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
     const Grid rows = Grid::every(0.03);
     const double middle = 0.1 * 3;
@@ -167,7 +167,7 @@ TEST_CASE("a run that goes on from what is a row of all but for its rounding has
     }
 }
 
-TEST_CASE("n continuations of a run take memory for it once, and leave the runs before them as they were", "[resume]") {
+TEST_CASE("n continuations of a run share its memory, and leave the earlier runs unchanged", "[resume]") {
     const ReferenceSystem& s = reference_system("W4: resonance, both frictions (fig 27)");
     const Grid rows = Grid::every(0.03);  // no part ends on a row of all
     constexpr int parts = 200;

@@ -38,7 +38,7 @@ TEST_CASE("rows lie at t_start + i dt and the last one at t_end, exactly", "[row
     CHECK(times_of(Grid::every(5), {0, 1}) == std::vector<double>{0, 1});
 }
 
-TEST_CASE("a dt that divides the window to rounding gives no sliver of a last interval", "[rows]") {
+TEST_CASE("a dt that divides the window to rounding leaves no tiny last interval", "[rows]") {
     for (const double dt : {0.1, 0.01, 0.001, 0.3, 0.7, 1.0 / 3}) {
         for (const int n : {1, 3, 7, 10, 100, 1000, 12345}) {
             const Window window{0, n * dt};
@@ -60,7 +60,7 @@ TEST_CASE("a dt that divides the window to rounding gives no sliver of a last in
     }
 }
 
-TEST_CASE("rows increase and their times do not add up roundings", "[rows]") {
+TEST_CASE("rows increase and their times do not accumulate rounding", "[rows]") {
     const auto times = times_of(Grid::every(1e-3), {0.3, 1000.3});
     REQUIRE(times.size() == 1000001);
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
@@ -94,11 +94,11 @@ TEST_CASE("the last row of dinal1989 is the state at t_end, not that of the step
     CHECK(coinciding.rows(coinciding.size() - 1, 1) == within(std::cos(2 * std::numbers::pi * 0.1), 1e-4));
 }
 
-TEST_CASE("a spacing that the times themselves cannot show is refused", "[rows]") {
+TEST_CASE("a spacing below the resolution of the times is refused", "[rows]") {
     CHECK_THAT(refusal({1e9, 1e9 + 1e-3}, Grid::every(1e-8)), Contains("dt = 1e-08") && Contains("rounding"));
 }
 
-TEST_CASE("a monitor that says no stops the run, which keeps its rows", "[rows]") {
+TEST_CASE("a monitor that returns false stops the run, which keeps its rows", "[rows]") {
     for (const Integrator& integrator : std::vector<Integrator>{Rk4{0.001}, Dinal1989{.h = 0.001}}) {
         const auto run = simulate(nondimensional(0.01, 0), {{}, {1, 0}}, {0, 1000}, Grid::every(0.1), integrator,
                                   [](double t) { return t < 10; });

@@ -61,7 +61,7 @@ TEST_CASE("a contour ends at the edge of the grid and where a value is missing",
     CHECK(points == 4);  // y = -1, -0.5 and 0.5, 1
 }
 
-TEST_CASE("where each shade is one number infinity has none", "[shades]") {
+TEST_CASE("infinity has no shade if each shade is a single number", "[shades]") {
     const std::vector<ShadeBand> bands = bands_of(shades_over(3, [](double x, double) { return x; }), 5);
     REQUIRE(bands.size() == 3);
     CHECK(!band_of(bands, INFINITY));
@@ -88,7 +88,7 @@ TEST_CASE("a few whole numbers have a shade each, other values round bands", "[s
     CHECK(bands_of(shades_over(3, [](double, double) { return 0.3; }), 5).size() == 1);
 }
 
-TEST_CASE("a resonance does not take the shades from all the rest", "[shades]") {
+TEST_CASE("a resonance does not use up the shades of all other values", "[shades]") {
     const auto bands = bands_of(shades_over(101, [](double x, double) { return 1 / std::fabs(x + 1e-6); }), 8);
     CHECK(bands.back().from < 20);  // the largest value is a million
     CHECK(bands.size() >= 3);

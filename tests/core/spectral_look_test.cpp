@@ -110,7 +110,8 @@ TEST_CASE("no pulse of the width that a user names is missed", "[spectral][look]
     }
 }
 
-TEST_CASE("a run knows the longest time between two looks at a function, and only of that", "[spectral][rk4][look]") {
+TEST_CASE("a run states the longest time between two samples of a function, and ignores native terms",
+          "[spectral][rk4][look]") {
     const Oscillator system = nondimensional(0.05, 0.02);
     const Excitation opaque = made(Scripted{.function = probe(smooth)});
     const auto gap = [&](const Excitation& M, const Integrator& integrator) {
@@ -127,7 +128,7 @@ TEST_CASE("a run knows the longest time between two looks at a function, and onl
     }
 }
 
-TEST_CASE("a jump that is not announced costs at most 70 values of M more than one that is", "[spectral][look]") {
+TEST_CASE("an unannounced jump costs at most 70 values of M more than an announced one", "[spectral][look]") {
     truth::Lot lot(13);
     const Oscillator system = nondimensional(0.05, 0.05);
     const auto calls = [&](double at, const std::vector<double>& breaks) {
@@ -145,7 +146,7 @@ TEST_CASE("a jump that is not announced costs at most 70 values of M more than o
     CHECK(more <= 70 * jumps);
 }
 
-TEST_CASE("even jumps that are not announced are foreseen: at most 40 values of M a step of a staircase",
+TEST_CASE("evenly spaced unannounced jumps are predicted: at most 40 values of M for each step of a staircase",
           "[spectral][look]") {
     const Oscillator system = nondimensional(0.05, 0.05);
     struct Case {
@@ -194,7 +195,7 @@ TEST_CASE("even jumps that are not announced are foreseen: at most 40 values of 
     }
 }
 
-TEST_CASE("an M that fails behind the end of the run is not asked there for its next jump", "[spectral][look]") {
+TEST_CASE("an M that fails after the end of the run is not searched there for its next jump", "[spectral][look]") {
     double last = 0;
     const auto function = probe([&](double t) { return last = std::max(last, t), 0.25 * std::floor(t / 0.25); });
     REQUIRE(simulate(nondimensional(0.05, 0.05), {made(Scripted{.function = function, .breaks = {}}), {1, 0}}, {0, 2.5},
@@ -202,7 +203,7 @@ TEST_CASE("an M that fails behind the end of the run is not asked there for its 
     CHECK(last == 2.5);
 }
 
-TEST_CASE("an M that is rough on every scale is followed as exactly as it can be, and the run says so",
+TEST_CASE("an M that is rough on every scale is followed as accurately as possible, and the run says so",
           "[spectral][look]") {
     const Oscillator system = nondimensional(0.05, 0.05);
     const Seen clean = look(system, smooth, {1, 0});
@@ -250,8 +251,9 @@ TEST_CASE("an M that is rough on every scale is followed as exactly as it can be
     CHECK(look(system, rounded(20 * 0x1p-4), {1, 0}).run.noise == 0);
 }
 
-TEST_CASE("a function that is rough at every scale ends with its own outcome, soon, unless that is as small as noise",
-          "[spectral][look][long]") {
+TEST_CASE(
+    "a function that is rough at every scale ends the run soon with its own outcome, unless it is as small as noise",
+    "[spectral][look][long]") {
     const double k = 4 * pi * pi;
     const Seen lost = look(nondimensional(0.05, 0.3), [&](double t) { return k * (noise(t) + 0.5); }, {0.3, 0});
     CHECK(lost.run.outcome == Outcome::unresolved);

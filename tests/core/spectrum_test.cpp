@@ -19,7 +19,7 @@ constexpr double pi = std::numbers::pi;
 
 }  // namespace
 
-TEST_CASE("the transform is the sum that defines it", "[spectrum]") {
+TEST_CASE("the transform equals the sum that defines it", "[spectrum]") {
     for (const std::size_t n : {8U, 97U, 101U, 103U, 254U, 1021U}) {
         std::vector<double> values(n);
         for (std::size_t i = 0; i < n; ++i) values[i] = std::sin(static_cast<double>(i * i % 37));

@@ -75,7 +75,7 @@ Eigen::VectorXd dense_spline(const std::vector<double>& t, const std::vector<dou
 
 }  // namespace
 
-TEST_CASE("a spline is the solution of all that is asked of its pieces at once, not a knot and periodic", "[spline]") {
+TEST_CASE("a spline solves all its equations at once, with not-a-knot and periodic ends", "[spline]") {
     std::vector<double> t{0.2, 0.5, 0.55, 1.3, 1.4, 2.1, 2.2, 3}, M{1, -0.5, 0.2, 2, 1.5, -3, -2.5, 1};
     for (const std::size_t points : {t.size(), std::size_t{5}, std::size_t{4}}) {
         t.erase(t.begin() + static_cast<std::ptrdiff_t>(points), t.end());

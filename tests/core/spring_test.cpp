@@ -34,7 +34,7 @@ Spring of_function(double (*torque)(double)) {
 
 }  // namespace
 
-TEST_CASE("the energy of springs adds up, of a user's function as well", "[spring][energy]") {
+TEST_CASE("the energy of springs adds up, also with a user's function", "[spring][energy]") {
     const std::vector<std::pair<const char*, Spring>> all = {
         {"cubic", cubic(0.5)},
         {"of powers", PolynomialSpring{{{1, -0.5}, {2, 0.2}, {5, 0.3}}}},
@@ -61,7 +61,7 @@ TEST_CASE("the energy of springs adds up, of a user's function as well", "[sprin
     CHECK(PolynomialSpring{{{2, 3.0}, {4, 5.0}}}.energy(-2) == within(-8 - 32, 1e-13));
 }
 
-TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run comes to", "[spring][steady]") {
+TEST_CASE("the steady motion of Duffing's oscillator is the limit of a long run", "[spring][steady]") {
     const Oscillator system = with_spring(cubic(1), 1, 0.05, 0.05, 0.2);
     const Excitation M = harmonic(1, 0.8);
     const double period = 2 * std::numbers::pi / 0.8;
@@ -80,7 +80,7 @@ TEST_CASE("the steady motion of Duffing's oscillator is the one that a long run 
     CHECK(adheres.rest.first == within(-adheres.rest.second, 1e-9));
 }
 
-TEST_CASE("the story of a run names a spring of its own", "[spring][explain]") {
+TEST_CASE("the story of a run names a second spring", "[spring][explain]") {
     const Excitation M;
     const Oscillator duffing = with_spring(cubic(0.4), 0.7, 0.05, 0.08), bare = with_spring(cubic(0.4), 0, 0.05, 0.08);
     const auto story = [&](const Oscillator& system) {

@@ -72,7 +72,8 @@ TEST_CASE("the steady motion without stops is Den Hartog's, amplitude and lag, a
     CHECK(compared > 150);
 }
 
-TEST_CASE("steady motions with stops: amplitudes of 80 digits, and how many stops there are", "[steady]") {
+TEST_CASE("steady motions with stops have the amplitudes of an 80-digit computation, and the right number of stops",
+          "[steady]") {
     const SteadyMotion stopping = steady_motion(driven(1, 0.836));
     CHECK(stopping.amplitude == within(0.1291703518, 5e-11));
     CHECK(stopping.stops == 2);
@@ -87,7 +88,7 @@ TEST_CASE("steady motions with stops: amplitudes of 80 digits, and how many stop
     }
 }
 
-TEST_CASE("the steady motion is the one that a long run comes to", "[steady]") {
+TEST_CASE("the steady motion is the limit of a long run", "[steady]") {
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> unit(0, 1);
     for (int i = 0; i < 12; ++i) {
@@ -165,7 +166,7 @@ TEST_CASE("without dry friction the multipliers and the lag are those of linear 
     }
 }
 
-TEST_CASE("a load that friction can hold moves nothing, and the places of rest are told", "[steady]") {
+TEST_CASE("a load that friction can hold moves nothing, and the places of rest are known", "[steady]") {
     SteadyQuestion question = driven(0.7, 1.3);
     SteadyMotion found = steady_motion(question);
     REQUIRE(found.status == SteadyStatus::adheres);
@@ -182,7 +183,7 @@ TEST_CASE("a load that friction can hold moves nothing, and the places of rest a
     CHECK(steady_motion(question).rest.second == within(0.5, 1e-12));
 }
 
-TEST_CASE("what creeps up to the edge of where friction holds it comes to rest there", "[steady]") {
+TEST_CASE("a mass that creeps to the edge of the dead zone comes to rest there", "[steady]") {
     // To the last bit: beside these numbers it may happen to stop in time.
     const double r = 0x1.dfcc813e9b56ep-2, gamma = 0x1.102878f76a40ap+0;
     SteadyQuestion question = driven(r, gamma, 0x1.913fb23b61405p-2);
@@ -196,7 +197,7 @@ TEST_CASE("what creeps up to the edge of where friction holds it comes to rest t
     CHECK(rest.start.theta == within(least + gamma, 1e-12));
 }
 
-TEST_CASE("at resonance below gamma = pi/4 it grows by pi - 4 gamma a period, and above it does not", "[steady]") {
+TEST_CASE("at resonance the amplitude grows by pi - 4 gamma a period below gamma = pi/4, and not above", "[steady]") {
     for (const double gamma : {0.0, 0.167, 0.5, 0.78}) {
         SteadyQuestion question = driven(1, gamma);
         question.drive.start_at({1, 0});

@@ -74,7 +74,7 @@ TEST_CASE("a periodic M that did not move a mass in a whole period never will", 
     }
 }
 
-TEST_CASE("a belt, a base and what a user does at an event may move what M cannot", "[outcome]") {
+TEST_CASE("a belt, a base and an act may move a mass that M cannot move", "[outcome]") {
     Drive shaken, carried;
     carried.belts = {wave(0.01, 0.6)};
     CHECK(outcome_of(carried, 10, true) == Outcome::stuck_at_end);
@@ -86,7 +86,7 @@ TEST_CASE("a belt, a base and what a user does at an event may move what M canno
     CHECK(outcome_of(both, 10, true) == Outcome::stuck_at_end);
 }
 
-TEST_CASE("going on from a stop that M may end, and from one that it cannot, is one run", "[outcome][resume]") {
+TEST_CASE("a run continued from a stop, whether M may end it or not, equals one run", "[outcome][resume]") {
     const Excitation M = native(Pulse{.amplitude = 1, .at = 20, .width = 1});
     for (const double t_end : {15.0, 30.0, 60.0}) {
         const Run whole = run_of(M, t_end, Integrator(Spectral{}));
@@ -99,7 +99,7 @@ TEST_CASE("going on from a stop that M may end, and from one that it cannot, is 
     }
 }
 
-TEST_CASE("the peak of a motion is that between the rows", "[outcome]") {
+TEST_CASE("the peak of a motion includes what lies between the rows", "[outcome]") {
     const Run run = run_of({}, 10, Integrator(Spectral{}));
     CHECK(peak(run) == 1);
     // Thrown from the middle: sqrt(v^2 + (Rd/k)^2) - Rd/k, at a time that is no row; without dry friction v/w0.

@@ -14,7 +14,7 @@ using Names = std::vector<std::string>;
 
 using List = std::vector<std::string_view>;
 
-TEST_CASE("a word is matched to the likest names, by its letters or by its meaning", "[suggest]") {
+TEST_CASE("a word is matched to the most similar names, by its letters or by its meaning", "[suggest]") {
     const List of_system{"I", "k", "C", "Rd", "Re"}, columns{"t", "theta", "velocity", "M", "friction", "damping"},
         options{"amplitude", "frequency", "omega", "phase", "at", "width", "step"},
         terms{"harmonic", "pulse", "samples", "chirp"}, fields{"T0", "omega0", "I", "M"},

@@ -10,7 +10,7 @@ namespace dinal::terms_test {
 using namespace dinal::model;
 using namespace dinal::excitations;
 
-TEST_CASE("each term breaks where its formula does, and is constant from where it is", "[excitation]") {
+TEST_CASE("each term breaks where its formula does, and is constant from where its formula is", "[excitation]") {
     struct Case {
         Term term;
         double constant_from;
@@ -135,7 +135,7 @@ TEST_CASE("a sawtooth and a triangle are exact at each of their corners", "[exci
     CHECK(wrong == 0);
 }
 
-TEST_CASE("breaks lead on even where the period is below the resolution of time", "[excitation]") {
+TEST_CASE("breaks keep increasing even if the period is below the resolution of time", "[excitation]") {
     const Excitation M = made(Square{1, 1e-20}) + made(Triangle{1, 1e-20}) + made(Sawtooth{1, 1e-20});
     for (const double t : {0.0, 1.0, 1e5, -3.0}) {
         CHECK(M.next_break(t) > t);
@@ -167,7 +167,7 @@ TEST_CASE("next_break strictly increases and no jump or kink is without a break"
     }
 }
 
-TEST_CASE("the greatest value and the period that a term tells are its own", "[excitation]") {
+TEST_CASE("the greatest value and the period of a term are those of its formula", "[excitation]") {
     for (const Excitation& M : one_of_each()) {
         const Term& term = M.components()[0].term;
         CAPTURE(term.index());

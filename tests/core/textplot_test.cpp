@@ -83,7 +83,7 @@ TEST_CASE("a braille cell has two by four dots, an ASCII cell one by two", "[tex
     CHECK(canvas_lines(ascii) == Texts{"'.:"});
 }
 
-TEST_CASE("a pen draws what is inside of the sheet and leaves out the rest", "[textplot]") {
+TEST_CASE("a pen draws only inside of the canvas", "[textplot]") {
     Canvas canvas(2, 1, Charset::braille);
     Pen pen(canvas, 1);
     pen.to(-1e200, 1);
@@ -108,7 +108,7 @@ TEST_CASE("nan lifts the pen", "[textplot]") {
     CHECK(canvas_lines(canvas) == Texts{"⠉⠀⠉"});
 }
 
-TEST_CASE("a small picture is known to the last character", "[textplot]") {
+TEST_CASE("a small picture is correct to the last character", "[textplot]") {
     Figure line = figure(curve({0, 1, 2}, {0, 1, 0}));
     line.x.label = "t";
     line.y.label = "y";
@@ -122,7 +122,7 @@ TEST_CASE("a small picture is known to the last character", "[textplot]") {
                                                                 "   0        1       2 t"});
 }
 
-TEST_CASE("colours are only in a picture for which they were asked", "[textplot]") {
+TEST_CASE("a picture has colours only on request", "[textplot]") {
     Figure two = figure(curve({0, 1}, {0, 1}, "a"));
     two.curves.push_back(curve({0, 1}, {1, 0}, "b"));
     CHECK(drawn(two, 60, 12).find('\x1b') == std::string::npos);
@@ -134,7 +134,7 @@ TEST_CASE("colours are only in a picture for which they were asked", "[textplot]
     }
 }
 
-TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot]") {
+TEST_CASE("no line is wider than requested, and there are no more lines", "[textplot]") {
     Figure family;
     for (int i = 0; i < 20; ++i) {
         family.curves.push_back(curve(even(0, 1, 50), even(0, i, 50), "curve number " + std::to_string(i)));
@@ -154,7 +154,7 @@ TEST_CASE("no line is wider than asked, and there are no more lines", "[textplot
     }
 }
 
-TEST_CASE("a user's words cannot reach the terminal as commands", "[textplot]") {
+TEST_CASE("control sequences in a user's text do not reach the terminal", "[textplot]") {
     Figure hostile = figure(curve({0, 1}, {0, 1}, "\x1b]0;title\x07\n\x7f\xc2\23331m\xff"));
     hostile.title = hostile.x.label = hostile.y.label = hostile.curves[0].label;
     hostile.curves.push_back(hostile.curves[0]);
@@ -186,7 +186,7 @@ TEST_CASE("a circle is round: as many dots high as wide", "[textplot]") {
     CHECK(widest <= 41);
 }
 
-TEST_CASE("stuck intervals are a bar below the time axis, the shortest too", "[textplot]") {
+TEST_CASE("stuck intervals are bars below the time axis, even the shortest", "[textplot]") {
     Figure run = figure(curve(even(0, 10, 50), even(0, 1, 50)));
     run.stuck = {{0, 0}, {5, 10}};
     const auto lines = lines_of(drawn(run, 50, 12, Charset::ascii));
@@ -199,7 +199,7 @@ TEST_CASE("stuck intervals are a bar below the time axis, the shortest too", "[t
     CHECK(marks <= 22);
 }
 
-TEST_CASE("letters tell curves apart where colours cannot", "[textplot]") {
+TEST_CASE("letters distinguish curves without colours", "[textplot]") {
     Figure two = figure(curve(even(0, 1, 9), even(0, 1, 9), "up"));
     two.curves.push_back(curve(even(0, 1, 9), even(1, 0, 9), "down"));
     const std::string text = drawn(two, 40, 10);
@@ -209,7 +209,7 @@ TEST_CASE("letters tell curves apart where colours cannot", "[textplot]") {
     CHECK(lines[lines.size() - 3].ends_with("b"));
 }
 
-TEST_CASE("nothing, one point and a constant are pictures, too", "[textplot]") {
+TEST_CASE("an empty curve, one point and a constant are drawn", "[textplot]") {
     CHECK(drawn(figure(curve({}, {})), 40, 10).find("(no points)") != std::string::npos);
     CHECK(drawn(figure(curve({not_a_number}, {not_a_number})), 40, 10).find("1.0") != std::string::npos);
     const std::string point = drawn(figure(curve({1}, {2})), 40, 12);
@@ -241,7 +241,7 @@ TEST_CASE("infinity is a gap", "[textplot]") {
     CHECK(view_of(broken).y.range().high == Approx(1.05));
 }
 
-TEST_CASE("who looks at a piece of time sees the values of that piece", "[textplot]") {
+TEST_CASE("a picture of a part of the time shows the values in that part", "[textplot]") {
     Figure zoomed = figure(curve({0, 1, 2, 3}, {100, 1, 2, 100}));
     zoomed.x.limits = Interval{1, 2};
     CHECK(view_of(zoomed).y.range().high == Approx(2.05));
@@ -273,14 +273,14 @@ TEST_CASE("ticks are round numbers with as many digits as they need", "[ticks]")
     CHECK(tick_texts(-0.3, 0.3, 2) == Texts{"-0.2", "0.0", "0.2"});  // one tick alone would give no scale
 }
 
-TEST_CASE("ticks that begin alike show the difference, and the label what to add", "[ticks]") {
+TEST_CASE("ticks that begin alike show the difference, and the label the offset", "[ticks]") {
     const Ticks ticks = ticks_of({}, Scale({1e6, 1e6 + 1e-3}, false), 5);
     CHECK(ticks.offset == "+1000000");
     CHECK(ticks.text.front() == "0.0000");
     CHECK(ticks.text.back() == "0.0010");
 }
 
-TEST_CASE("what is added to ticks is the round number in their middle", "[ticks]") {
+TEST_CASE("the offset of ticks is the round number in their middle", "[ticks]") {
     const Ticks about = ticks_of({}, Scale({1e9 - 1.1e-3, 1e9 + 1.1e-3}, false), 3);
     CHECK(about.offset == "+1000000000");
     CHECK(about.text == Texts{"-0.001", "0.000", "0.001"});
@@ -294,7 +294,7 @@ TEST_CASE("ticks are as exact as the numbers they stand for", "[ticks]") {
     CHECK(ticks.text == Texts{"-0.0010", "-0.0005", "0.0000", "0.0005", "0.0010"});
 }
 
-TEST_CASE("ticks can be asked for by their distance or one by one", "[ticks]") {
+TEST_CASE("ticks can be given by their distance or one by one", "[ticks]") {
     Axis axis;
     axis.division = 0.25;
     CHECK(ticks_of(axis, Scale({0, 0.6}, false), 3).text == Texts{"0.00", "0.25", "0.50"});

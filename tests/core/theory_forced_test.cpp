@@ -42,7 +42,7 @@ TEST_CASE("near resonance the magnification keeps its digits, and at resonance i
     CHECK(phase_lag(1.01, 0) == Approx(pi));
 }
 
-TEST_CASE("equivalent damping takes from a cycle what dry friction takes", "[theory]") {
+TEST_CASE("equivalent damping takes the same energy from a cycle as dry friction", "[theory]") {
     const double Rd = 0.7, omega = 3, X = 0.2;
     // zeta = C/(2 sqrt(I k)), in the units I = 2, k = 5, M0 = 1.5. In a cycle C takes pi C omega X^2, friction 4 Rd X.
     const double omega0 = std::sqrt(2.5), M0 = 1.5;
@@ -51,7 +51,8 @@ TEST_CASE("equivalent damping takes from a cycle what dry friction takes", "[the
           Approx(C / (2 * std::sqrt(10.0))).epsilon(1e-14));
 }
 
-TEST_CASE("figure 25: friction taken for viscous is 8.9 % too great, zeta = 0.242 10.6 %", "[theory]") {
+TEST_CASE("figure 25: linearised friction gives an amplitude 8.9 % too great, zeta = 0.242 one 10.6 % too great",
+          "[theory]") {
     const auto motion = linearised_friction(1.35, 0, 0.5);
     REQUIRE(motion);
     const double truth = 0.860792180;
@@ -62,7 +63,7 @@ TEST_CASE("figure 25: friction taken for viscous is 8.9 % too great, zeta = 0.24
     CHECK(std::fabs(phase_lag(1.35, 0.242) * 180 / pi - 141.54) <= 0.005);
 }
 
-TEST_CASE("friction taken for viscous is the motion that its own equivalent damping gives", "[theory]") {
+TEST_CASE("the motion with linearised friction is the one that its equivalent damping gives", "[theory]") {
     for (const double zeta : {0.0, 0.05, 0.8}) {
         for (const double r : {0.2, 0.95, 1.0, 1.05, 4.0}) {
             const double gamma = 0.3;

@@ -38,7 +38,7 @@ void check_extremes(const FreeMotion& motion, const std::vector<Extreme>& expect
 
 }  // namespace
 
-TEST_CASE("the free response is the exact one in all regimes and on the way between them", "[theory]") {
+TEST_CASE("the free response is exact in all regimes and between them", "[theory]") {
     truth::Lot chance(1);
     for (int i = 0; i < 400; ++i) {
         const double near_one = 1 + (i % 2 == 0 ? 1 : -1) * chance.power_of_ten(-16, -1);
@@ -55,7 +55,7 @@ TEST_CASE("the free response is the exact one in all regimes and on the way betw
     }
 }
 
-TEST_CASE("the free response before t = 0 leads to where it starts", "[theory]") {
+TEST_CASE("the free response before t = 0 leads to its start", "[theory]") {
     for (const double zeta : {0.0, 0.3, 1.0, 1.7}) {
         const State before = free_response(3, zeta, {0.4, -1.1}, -0.6);
         const State back = free_response(3, zeta, before, 0.6);
@@ -82,7 +82,7 @@ TEST_CASE("figure 26: the half-cycle map with both frictions", "[theory]") {
     CHECK(std::fabs(motion.time_to_rest() - 1.733933195) <= printed);
 }
 
-TEST_CASE("free motion with dry friction is the exact one, event by event and in between", "[theory]") {
+TEST_CASE("free motion with dry friction is exact, event by event and in between", "[theory]") {
     truth::Lot chance(2);
     int rests = 0;
     for (int i = 0; i < 300; ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("the duration of a free motion is (1 - A)/(4 gamma) with A, the last a
     }
 }
 
-TEST_CASE("n half cycles at once are n times one", "[theory]") {
+TEST_CASE("n half cycles at once equal n single ones", "[theory]") {
     for (const double zeta : {0.0, 1e-12, 1e-4, 0.05}) {
         const HalfCycles map(zeta, 0.003);
         double X = 1;
@@ -137,7 +137,7 @@ TEST_CASE("n half cycles at once are n times one", "[theory]") {
     }
 }
 
-TEST_CASE("a motion of 2.5e12 cycles is as quick and as exact as a short one", "[theory]") {
+TEST_CASE("a motion of 2.5e12 cycles is computed as quickly and exactly as a short one", "[theory]") {
     const double gamma = 1e-13;
     const FreeMotion motion(nondimensional(0, gamma), {1, 0});
     CHECK(motion.time_to_rest() == Approx(0.25 / gamma).epsilon(1e-12));
@@ -145,7 +145,7 @@ TEST_CASE("a motion of 2.5e12 cycles is as quick and as exact as a short one", "
     CHECK(motion.at(1e12).theta == Approx(1 - 0.4).epsilon(1e-3));  // an eighth of 1e-3 period is left of t's digits
 }
 
-TEST_CASE("next to no damping takes as many half cycles as none", "[theory]") {
+TEST_CASE("almost no damping takes as many half cycles as none", "[theory]") {
     for (const double zeta : {0.0, 1e-305, 1e-300}) {
         CAPTURE(zeta);
         CHECK(HalfCycles(zeta, 1e12).until_within(1e12, 1e300) / 5e287 == Approx(1).epsilon(1e-11));
@@ -171,7 +171,7 @@ TEST_CASE("the closed form of a decay whose last extreme is Re/k ends there", "[
     }
 }
 
-TEST_CASE("inside the dead zone nothing begins", "[theory]") {
+TEST_CASE("inside the dead zone no motion begins", "[theory]") {
     const FreeMotion motion(nondimensional(0.1, 0.1, 0.2), {0.2, 0});
     CHECK(motion.time_to_rest() == 0);
     CHECK(motion.rest_position() == 0.2);
@@ -205,7 +205,7 @@ TEST_CASE("without dry friction a motion swings for ever, or tends to the middle
     CHECK(FreeMotion(nondimensional(0, 0, 0.1), {1, 0}).time_to_rest() == never);
 }
 
-TEST_CASE("three extremes tell both dampings", "[theory]") {
+TEST_CASE("three extremes determine both dampings", "[theory]") {
     truth::Lot chance(4);
     for (int i = 0; i < 100; ++i) {
         const double zeta = i % 10 == 0 ? 0 : chance.between(0, 0.3);

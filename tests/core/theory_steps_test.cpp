@@ -21,7 +21,7 @@ constexpr double pi = std::numbers::pi;
 
 }  // namespace
 
-TEST_CASE("deltatmax is the one that the listing prints", "[theory]") {
+TEST_CASE("deltatmax is the value that the listing prints", "[theory]") {
     // Figure 22 as it was typed: deltatmax = T0 0.167/6.283311 = 0.0266 (examples/classic.lua shows it).
     const Oscillator system = truth::system_of({.inertia = 1, .stiffness = 39.48, .kinetic_friction = 6.59316});
     const State initial{0, 6.283311};
@@ -43,7 +43,7 @@ TEST_CASE("the corrected limit is zeta/pi + gamma K in any units", "[theory]") {
     CHECK(euler_step_limit(system, {0, angle * w0}) == Approx(T0 * (zeta / pi + gamma / (2 * pi))).epsilon(1e-14));
 }
 
-TEST_CASE("neither limit of the report is the true one of rk4", "[theory]") {
+TEST_CASE("neither step limit of the report is that of rk4", "[theory]") {
     const Oscillator system = truth::nondimensional(0.02387, 0);
     CHECK(printed_step_limit(system, {1, 0}, 1) == Approx(0.02387).epsilon(1e-14));
     CHECK(euler_step_limit(system, {1, 0}) == Approx(0.02387 / pi).epsilon(1e-14));

@@ -39,7 +39,8 @@ double distance(double px, double py, double ax, double ay, double bx, double by
 
 }  // namespace
 
-TEST_CASE("a million points over time become four to a column of pixels, and no extreme is lost", "[thinning]") {
+TEST_CASE("a million points over time are reduced to four for each column of pixels, and no extreme is lost",
+          "[thinning]") {
     Curve curve = sampled(
         1'000'000, [](double s) { return 1000 * s; }, [](double s) { return std::exp(-3 * s) * std::cos(6283 * s); });
     std::vector<double> y(curve.y.values.begin(), curve.y.values.end());
@@ -111,7 +112,7 @@ TEST_CASE("a point that left its cycle once is drawn", "[thinning]") {
     CHECK(std::count(kept.begin(), kept.end(), 654'321U) == 1);
 }
 
-TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever order they come", "[thinning]") {
+TEST_CASE("of a cloud of points one remains for each pixel, in any order", "[thinning]") {
     // Ten points above each other in each of ten columns: as a line, only the ends of each column would be seen.
     std::vector<double> x, y;
     for (int column = 0; column < 10; ++column) {
@@ -128,7 +129,7 @@ TEST_CASE("points are no line: a cloud keeps one of each pixel, in whatever orde
     CHECK(thinned(cloud, paper_for(cloud, {600, 400})).size() == 100);
 }
 
-TEST_CASE("points that cannot be seen are left out, and so is what has no place", "[thinning]") {
+TEST_CASE("points that cannot be seen, or have no place on an axis, are left out", "[thinning]") {
     Curve cloud{Numbers::own({0, 5, std::nan(""), 1, 0}), Numbers::own({0, 5, 0, 1, std::nan("")})};
     cloud.style = Style::points;
     const Paper paper{{Scale({0, 1}, false), Scale({0, 1}, false)}, {600, 400}};

@@ -15,7 +15,7 @@ local function fall(act, t_end, method, direction)
     }
 end
 
-test("a bounce by act, told both ways, is told once, and the mass stays above", function()
+test("a bounce by act, written in two ways, is reported once, and the mass stays above", function()
     for _, method in ipairs(methods) do
         for _, act in ipairs { function(_, theta, v) return theta, -v end, function(_, theta, v) return theta, math.abs(v) end } do
             local run = fall(act, 100, method)
@@ -29,7 +29,7 @@ test("a bounce by act, told both ways, is told once, and the mass stays above", 
     end
 end)
 
-test("what stands at zero may be sent back by a state, too", function()
+test("a state that reaches zero with an event can be reversed by its act", function()
     for _, method in ipairs(methods) do
         local run = block:simulate {
             t_end = 10, dt = 1, integrator = method,
@@ -42,7 +42,7 @@ test("what stands at zero may be sent back by a state, too", function()
     end
 end)
 
-test("bounces by act that die out end the run with what to do, and never fall through", function()
+test("bounces by act that die out end the run with a remedy, and the mass never falls through", function()
     for _, method in ipairs(methods) do
         for _, direction in ipairs { "down", "both" } do
             for kept, most in pairs { [0.9] = 1e-3, [0.5] = 1e-4, [0.01] = 1e-4, [1e-5] = 1e-4, [0] = 1e-4 } do
@@ -76,7 +76,7 @@ test("an act that keeps little of the speed, or none, does not let the mass thro
     end
 end)
 
-test("what an act stops may stick there, go back, or be carried on by time", function()
+test("a mass stopped by an act may stick there, return, or be moved on later", function()
     for _, method in ipairs(methods) do
         local function stopped(sys, task)
             task.theta0, task.t_end, task.dt, task.integrator = 0, 3, 1, method
@@ -102,7 +102,7 @@ test("what an act stops may stick there, go back, or be carried on by time", fun
     end
 end)
 
-test("acts that come at even times do not die out", function()
+test("acts at even times are not taken for acts that die out", function()
     local run = block:simulate {
         velocity0 = 1, t_end = 10.02, dt = 1,
         events = { { when = function(t) return math.sin(20 * math.pi * t) end, act = function(_, theta, v) return theta, v + 1 end } },
@@ -111,7 +111,7 @@ test("acts that come at even times do not die out", function()
     equal(run.outcome, "reached the end")
 end)
 
-test("a user's event where the velocity is zero comes after the turn, and makes no slip of it", function()
+test("a user's event where the velocity is zero comes after the turn, and does not make it a slip", function()
     -- 3 - .6 n at the turns, by hand: the fourth, at .6 > Re/k, is one, and the next is a rest
     local peaks = system { I = 1, k = 1, Rd = 0.3, Re = 0.5 }:simulate {
         theta0 = 3, t_end = 20, dt = 1, events = { { when = function(_, _, v) return v end } },
@@ -122,7 +122,7 @@ test("a user's event where the velocity is zero comes after the turn, and makes 
     equal(peaks.events[#peaks.events].kind, "rest")
 end)
 
-test("a state that reaches Re exactly, or touches it, holds; one that passes it lets go", function()
+test("a state that only reaches or touches Re holds the mass; one that exceeds it releases the mass", function()
     local sys = system { I = 1, k = 4, C = 0.2, Rd = 0.3, Re = 0.5 }
     local function run(rate, t_end)
         return sys:simulate { M = function(_, _, _, z) return z.e end, t_end = t_end, dt = 1, states = { e = { rate = rate } } }
@@ -180,7 +180,7 @@ test("a jump of velocity by an act comes back through a delay, also at the end o
     end
 end)
 
-test("a hundred and fifty acts at nearly one instant are no chatter", function()
+test("a hundred and fifty acts at nearly one instant are not chatter", function()
     local kicks, apart = 150, 2 ^ -31
     local events = {}
     for i = 1, kicks do
@@ -192,7 +192,7 @@ test("a hundred and fifty acts at nearly one instant are no chatter", function()
     near(run.theta[#run], 0.75 * kicks - apart * kicks * (kicks + 1) / 2, 1e-13)
 end)
 
-test("an event is told at the passages of its direction only, however much faster than the motion they come", function()
+test("an event is reported only when its value passes in its direction, even if it oscillates much faster than the motion", function()
     local sys = system { I = 1, k = 1, C = 0.05, Rd = 0.1, Re = 0.2 }
     for _, omega in ipairs { 0.5, 1, 2, 3, 4, 5, 6, 8, 10, 13, 25, 100 } do
         for direction, first in pairs { up = 2, down = 1 } do
@@ -209,7 +209,7 @@ test("an event is told at the passages of its direction only, however much faste
     end
 end)
 
-test("what comes at the instant of an event that stops the run is told, too", function()
+test("events at the instant of one that stops the run are reported, too", function()
     for _, method in ipairs(methods) do
         local run = block:simulate {
             velocity0 = 1, t_end = 3, dt = 1, integrator = method,
@@ -223,18 +223,18 @@ test("what comes at the instant of an event that stops the run is told, too", fu
     end
 end)
 
-test("an event at a flat zero is at that zero", function()
+test("an event is located at a flat zero", function()
     local run = block:simulate { velocity0 = 1, t_end = 3, dt = 1, events = { { when = function(t) return (t - 1) ^ 3 end } } }
     near(run.events[1].t, 1, 1e-15)
 end)
 
-test("the work of an act is what the springs and the mass have more behind it", function()
+test("the work of an act equals the energy that springs and mass gain", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.1, spring = spring.polynomial { [3] = 2 } }
     local push = { when = function(t) return t - 1.3 end, act = function(_, theta, velocity) return theta + 0.3, velocity end }
     closes(sys:simulate { theta0 = 1, t_end = 5, dt = 0.1, events = { push } })
 end)
 
-test("a mass that stands is not at rest while an act is still to come", function()
+test("a mass at rest is not at rest for good while an act is still to come", function()
     local kick = { when = function(t) return t - 50 end, act = function(_, _, velocity) velocity.a = 1 end }
     local run = system { bodies = { a = { I = 1, k = 1, Rd = 0.3 } } }:simulate { theta0 = { a = 0.1 }, t_end = 10, events = { kick } }
     equal(run.outcome, "stuck at the end")

@@ -20,7 +20,7 @@ local function animated(of, options)
     return read(options.file)
 end
 
-test("the mass of an SVG is where run:at says, at equal steps of time", function()
+test("the mass of an SVG is at the angles of run:at, at equal steps of time", function()
     local svg = animated(run, { speed = 2 })  -- 5 s, 125 steps
     local mass = values(svg, 'type="translate')[1]
     equal(#mass, 126)
@@ -39,7 +39,7 @@ test("the mass of an SVG is where run:at says, at equal steps of time", function
     assert(svg:match("<desc>.-</desc>"):find("Below, θ from %S+ to %S+ over t from 0 to 10%."), "the axes in words")
 end)
 
-test("it is another colour while it sticks, from when to when the events say", function()
+test("the mass has another colour while it sticks, between the times of the events", function()
     local svg = animated(run, {})
     local times = svg:match('keyTimes="([^"]*)"')
     local stick = run.events[#run.events].t  -- it comes to rest
@@ -62,7 +62,7 @@ test("a belt moves, walls and springs are there if the system has them", functio
     has_not(animated(run, {}), "patternTransform")
 end)
 
-test("the axis ends at the extremes of the run, which lie between two steps of the animation", function()
+test("the axis ends at the extremes of the run, which lie between two frames of the animation", function()
     local swing = system{ I = 1, k = 4, Rd = 0.26, Re = 0.5 }:simulate{ theta0 = 1, t_end = 8, dt = 0.001 }
     local least = swing.events[1].theta
     near(least, -0.87, 1e-12)
@@ -76,7 +76,7 @@ test("the axis ends at the extremes of the run, which lie between two steps of t
     has_not(later, ">-0.87</text>")
 end)
 
-test("a part of a run, a run from a file, units", function()
+test("an animation may show a part of a run or a run from a file, and has units", function()
     local part = animated(run, { from = 2, to = 4, speed = 1 })
     has(part, "t = 2 to 4")
     equal(#values(part, 'type="translate')[1], 51)
@@ -84,7 +84,7 @@ test("a part of a run, a run from a file, units", function()
     has(animated(run, { units = { theta = "<m>", t = "s" } }), "θ, &lt;m&gt;")
 end)
 
-test("what nothing brings back turns as discs, in metres or on springs it slides", function()
+test("bodies without springs are drawn as discs, in metres or with springs side by side", function()
     local function clutch(k, units)
         local rig = system{ bodies = { motor = { I = 1, k = k }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } }, units = units }
         return animated(rig:simulate{ velocity0 = { motor = 3 }, t_end = 1 }, {})
@@ -94,7 +94,7 @@ test("what nothing brings back turns as discs, in metres or on springs it slides
     has(clutch(0, { theta = "m" }), "side by side")
 end)
 
-test("what cannot be shown is said", function()
+test("an animation that is impossible is an error", function()
     raises_here(function() run:animate() end, "a terminal does not show animations", 'give file = "run.svg"')
     refuses(function(o) run:animate(o) end, {
         { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
@@ -107,7 +107,7 @@ test("what cannot be shown is said", function()
     })
 end)
 
-test("bodies stand along their links in animations and plots, from the one that links name first", function()
+test("bodies are placed along their links in animations and plots, beginning with the first one in links", function()
     local rig = system{ bodies = { brake = { I = 1, k = 9 }, load = { I = 3 }, motor = { I = 1 } },
         links = { clutch = { "motor", "load", Rd = 2 }, rod = { "load", "brake", k = 3 } } }
     local moving = rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }

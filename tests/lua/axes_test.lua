@@ -5,7 +5,7 @@ local metres = { theta = "m", t = "s" }
 local sys = system{ I = 1, k = 4, Rd = 0.1 }
 local run = sys:simulate{ M = excitation.harmonic{ amplitude = 2, omega = 1 }, theta0 = 1, t_end = 5, dt = 0.1 }
 
-test("what measures something else has an axis of its own, one below the other", function()
+test("columns of different quantities have separate axes, one below the other", function()
     local text = picture(run, { y = { "theta", "velocity", "M", "friction" }, units = metres })
     has(text, "theta, m", "theta', m/s", "torque", "a M", "b friction")
     local first, second, third = text:find("theta, m", 1, true), text:find("theta', m/s", 1, true), text:find("torque", 1, true)
@@ -17,7 +17,7 @@ test("what measures something else has an axis of its own, one below the other",
     raises_here(function() run:plot{ labels = 3, show = false } end, "labels must be a list of words")
 end)
 
-test("a spectrum is drawn over decades, a response near a pole up to where most of it says something", function()
+test("a spectrum is drawn over decades, and a response near a pole with limits that show most of it", function()
     local function drawn(d, options) return picture(d, options) end
     local sys = nondimensional { zeta = 0.05 }
     local spectrum = sys:simulate { M = excitation.harmonic { frequency = 0.4 }, theta0 = 1, t_end = 64, dt = 0.05 }:spectrum {}

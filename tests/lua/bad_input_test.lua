@@ -37,7 +37,7 @@ test("a table of options may have a metatable, but options hidden in it do not c
     raises_here(function() system(tricky) end, "needs k")
 end)
 
-test("methods and metamethods called on the wrong thing are sentences and no crashes", function()
+test("methods and metamethods called on a wrong value raise errors and do not crash", function()
     local sys = system { I = 1, k = 1 }
     local run = sys:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
     local meta = debug.getmetatable(run)
@@ -57,12 +57,12 @@ test("methods and metamethods called on the wrong thing are sentences and no cra
     collectgarbage()
 end)
 
-test("getmetatable of our objects gives a name, so that nobody breaks them by accident", function()
+test("getmetatable of an object returns a name, so that nobody breaks it by accident", function()
     equal(getmetatable(system { I = 1, k = 1 }), "system")
     assert(not pcall(setmetatable, system { I = 1, k = 1 }, {}))
 end)
 
-test("errors of a call through pcall and in a tail call still tell a line", function()
+test("errors of a call through pcall and in a tail call still name a line", function()
     local function tail() return system { I = 0, k = 1 } end
     raises_here(tail, "system: I = 0")
     local ok, message = pcall(system, { I = 0, k = 1 })
@@ -70,7 +70,7 @@ test("errors of a call through pcall and in a tail call still tell a line", func
     has(message, "system: I = 0")
 end)
 
-test("times of which powers overflow are refused", function()
+test("times with powers that overflow are refused", function()
     refuses(system, {
         { { I = 1e200, k = 1 }, "I = 1e+200 and k = 1 are too far apart for double precision: choose other units" },
         { { I = 1e-200, k = 1 }, "too far apart" },

@@ -12,7 +12,7 @@ local function clutch(options)
     return system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = options } }
 end
 
-test("a clutch locks up: its time, the common speed, and the torque that it holds then", function()
+test("a clutch locks up at the right time and speed, and holds the right torque", function()
     local run = clutch { Rd = 2 }:simulate { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }
     local stick = first(run, "stick", "clutch")
     near(stick.t, 3 / (2 / 1 + 2 / 3), 1e-13)
@@ -27,7 +27,7 @@ test("a clutch locks up: its time, the common speed, and the torque that it hold
     near(run.clutch.torque[500], 1, 1e-13)
 end)
 
-test("a capacity that falls lets go as a load that rises does", function()
+test("a capacity that falls releases as a load that rises does", function()
     local fading = system { I = 1, k = 0, Rd = 0.1, Re = function(t) return 1 - t / 10 end }
     local run = fading:simulate { M = 0.5, t_end = 8 }
     near(first(run, "slip").t, 5, 1e-12)
@@ -37,7 +37,7 @@ test("a capacity that falls lets go as a load that rises does", function()
     near(first(other:simulate { M = 0.6, t_end = 8 }, "slip").t, 5, 1e-12)
 end)
 
-test("without a normal load a mass flies freely, and a negative one counts as none", function()
+test("without a normal load a mass moves freely, and a negative load counts as none", function()
     local run = system { I = 1, k = 0, Rd = 1, normal = function(t) return 1 - t end }
         :simulate { velocity0 = 2, t_end = 4 }
     near(run:at(1), 2 - 1 / 2 + 1 / 6, 1e-12)
@@ -46,7 +46,7 @@ test("without a normal load a mass flies freely, and a negative one counts as no
     near(theta, 2 - 1 / 3 + 3 * 1.5, 1e-12)
 end)
 
-test("friction that depends on place, on a state, and on the speed", function()
+test("friction may depend on angle, on a state, and on the speed", function()
     -- a wedge: while sliding down from theta0 > 0 friction c theta is a spring
     local run = system { I = 1, k = 4, Rd = function(t, theta) return 3 * math.abs(theta) end,
         Re = function(t, theta) return 3 * math.abs(theta) end }:simulate { theta0 = 1, t_end = 1.5, dt = 0.5 }
@@ -90,7 +90,7 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)
 
-test("two bodies that stick to each other are one of both inertias", function()
+test("two bodies that stick to each other are one body with both inertias", function()
     local M = function(t) return 3 * math.sin(t) end
     local pair = pair({ I = 1, k = 4, Rd = 0.3 }, { I = 2 }, { Rd = 100 })
         :simulate { M = { a = M }, t_end = 20, dt = 0.5 }
@@ -99,7 +99,7 @@ test("two bodies that stick to each other are one of both inertias", function()
     equal(#pair.events, #one.events)
 end)
 
-test("a body that goes on is that of the run of all bodies that goes on", function()
+test("continuing one body continues the run of all bodies", function()
     local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1, Rd = 0.2 }, b = { I = 1 } }, links = { link = { "a", "b", k = 4 } } }
     local run = rig:simulate { M = { a = math.sin }, t_end = 3, dt = 0.1 }
     local body, whole = run.b:continue { t_end = 5 }, run:continue { t_end = 5 }
@@ -137,7 +137,7 @@ test("a gap between two bodies: momentum is conserved and the difference of spee
     near(run.link.theta[1001], 1, 1e-15)
 end)
 
-test("a pulse between the nodes is seen while all bodies stand, with a state beside", function()
+test("a pulse between the nodes is found while all bodies are at rest, also with a state", function()
     for _, states in ipairs { {}, { e = { rate = function() return 0 end } } } do
         local text = "pulse"
         local M = function(t) return math.abs(t - 2.069) < 0.1 and select("#", text, 1) or 0 end  -- not read: select
@@ -146,7 +146,7 @@ test("a pulse between the nodes is seen while all bodies stand, with a state bes
     end
 end)
 
-test("a mass that leans on a wall where a run ends is told to leave it by the run that goes on", function()
+test("a run continued from a mass that leans on a wall knows that it leans", function()
     local rig = system { bodies = { a = { I = 1, k = 0, walls = { upper = 1, restitution = 0 } } } }
     local options = { M = { a = function(t) return 2 - t end }, t_end = 1.8 }
     local run = rig:simulate(options):continue { t_end = 4 }
@@ -214,7 +214,7 @@ test("mistakes are named with the body or link, and the nearest name", function(
     raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
 end)
 
-test("a run of several bodies has their columns and pictures by name, and gives way to a link called as one of its fields", function()
+test("a run of several bodies has their columns and pictures by name; a link called like a field hides that field", function()
     local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 2, k = 1 } },
         links = { gap = { "a", "b", k = 3 } }, units = { theta = "deg", M = "N m" } }
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 20, dt = 0.1 }
@@ -236,7 +236,7 @@ test("a run of several bodies has their columns and pictures by name, and gives 
     equal(run.gap.excitation, nil)
 end)
 
-test("some columns can be saved, and what is rough is told", function()
+test("a selection of columns can be saved, and roughness is reported", function()
     local rig = clutch { Rd = 2 }
     local run = rig:simulate { velocity0 = { motor = 3 }, t_end = 1, dt = 0.5 }
     equal(table.concat(reloaded(run, { columns = { "t", "load.theta" } }).names, " "), "t load.theta")
@@ -246,7 +246,7 @@ test("some columns can be saved, and what is rough is told", function()
     has_not(run.outcome, "rk4")
 end)
 
-test("a constant normal load is in Rd, and units that are powers of two change no bit", function()
+test("a constant normal load multiplies Rd, and units that are powers of two change no bit", function()
     local M = function(t) return 2 * math.sin(1.3 * t) end
     local function chain(scale, time)
         scale, time = scale or 1, time or 1
@@ -266,7 +266,7 @@ test("a constant normal load is in Rd, and units that are powers of two change n
     equal(loaded.a.theta, plain.a.theta)
 end)
 
-test("a contact between a body that a belt carries and one that stands slips, though both are held", function()
+test("a contact between a body that a belt carries and one at rest slips, though both stick", function()
     local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.2 })
     local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }
     near(first(run, "stick", "a").t, 0.3 / 0.8, 1e-13)
@@ -277,7 +277,7 @@ test("a contact between a body that a belt carries and one that stands slips, th
     near(e.link.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
-test("what sticks is let go where a capacity that has a corner later on is passed, however long the run", function()
+test("a body is released when M exceeds a varying capacity, however long the run", function()
     local rig = system { bodies = { b = { I = 2, k = 3, Rd = 0.3, normal = function(t) return 1 + 1.135 * math.sin(2.8376 * t) end } } }
     for _, t_end in ipairs { 1, 2, 2.1, 3 } do
         local run = rig:simulate { M = { b = excitation.harmonic { amplitude = 0.9, omega = 1.3 } }, t_end = t_end }
@@ -287,7 +287,7 @@ test("what sticks is let go where a capacity that has a corner later on is passe
     end
 end)
 
-test("a body that creeps beside one that swings changes nothing of its motion or events", function()
+test("a body that creeps does not change the motion or events of another one", function()
     local w, M = 2 * math.pi, excitation.harmonic { amplitude = 1, omega = 1.7 }
     local swings = { I = 1, k = 4, Rd = 0.1 }
     local alone = system { bodies = { b = swings } }:simulate { M = { b = M }, t_end = 60, dt = 1 }
@@ -301,7 +301,7 @@ test("a body that creeps beside one that swings changes nothing of its motion or
     end
 end)
 
-test("an act of a rig changes the fields of its tables", function()
+test("an act of several bodies changes the fields of its tables", function()
     local rig = system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 9 } } }
     raises(function()
         rig:simulate { velocity0 = { a = 1 }, t_end = 5, events = { {
@@ -310,7 +310,7 @@ test("an act of a rig changes the fields of its tables", function()
     end, "must change the fields of theta and velocity, and return nothing")
 end)
 
-test("a failed run tells at(t) why it ended, for one body and for several", function()
+test("at(t) of a failed run states why it ended, for one body and for several", function()
     local function fails(from) return function(t) return t < from and 1 or 0 / 0 end end
     for _, from in ipairs { 0, 2 } do
         for _, sys in ipairs { system { I = 1, k = 1 }, system { I = 1, k = 1, Rd = function() return 0.1 end },
@@ -356,7 +356,7 @@ test("each body and link is a system of its own, and with changes some of its nu
     raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }")
 end)
 
-test("several bodies take spectral and rk4, and say of exact that it is for one body", function()
+test("several bodies accept spectral and rk4, and exact says that it is for one body", function()
     local rig = system { bodies = { a = { I = 1, k = 4, Rd = 0.3, Re = 0.5 }, b = { I = 2, C = 0.1, walls = { lower = -0.5, upper = 0.5 } } },
         links = { rod = { "a", "b", k = 3, Rd = 0.2 } } }
     local function run(by, t_end)
@@ -421,7 +421,7 @@ test("each body and link has the states, and the events of the user with its own
     equal(table.concat(run.rod.names, " "), "t theta velocity torque friction z")
 end)
 
-test("the lines that repeat a run of several bodies name its integrator, and list its times", function()
+test("the header of a file of several bodies names its integrator, and lists its times", function()
     local rig = system { bodies = { a = { I = 1, k = 4 }, b = { I = 1 } } }
     local times = {}
     for i = 1, 25 do times[i] = i / 10 end

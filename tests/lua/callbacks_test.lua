@@ -23,7 +23,7 @@ test("an error in M arrives unchanged, and names the line of M", function()
     works_still()
 end)
 
-test("an error value that is no string arrives as the same value", function()
+test("an error value that is not a string arrives as the same value", function()
     for _, value in ipairs { {}, 42, false, print, setmetatable({}, { __tostring = error }) } do
         local ok, found = pcall(simulate, function(t) if t > 0.1 then error(value) end return 0 end)
         assert(not ok and rawequal(found, value))
@@ -42,7 +42,7 @@ test("the rows before an error are kept in dinal.partial", function()
     near((partial:at(0.3)), simulate(0).theta[31], 1e-12)
 end)
 
-test("a result of M that is no finite number is an error with the line of M, the value and the time", function()
+test("a result of M that is not a finite number is an error with the line of M, the value and the time", function()
     local here = debug.getinfo(1, "S").short_src
     for text, value in pairs { ['the string "1.5"'] = "1.5", ["a table"] = {}, ["true"] = true, ["inf"] = math.huge, ["-inf"] = -math.huge, ["nan"] = 0 / 0 } do
         local M = function(t) return t > 0.35 and value or 0 end
@@ -55,7 +55,7 @@ test("a result of M that is no finite number is an error with the line of M, the
     works_still()
 end)
 
-test("M cannot yield, and is told so", function()
+test("an M that yields gets an error that explains it", function()
     local function M(t) if t > 0.2 then coroutine.yield(t) end return 0 end
     raises(function() simulate(M) end, "yield")
     local ok, message = coroutine.resume(coroutine.create(function() simulate(M) end))
@@ -89,7 +89,7 @@ test("M may call simulate itself, and fail there", function()
     works_still()
 end)
 
-test("M that calls simulate without end is an error and not a crash", function()
+test("M that calls simulate without end is an error and does not crash", function()
     local function M() return simulate(M) end
     raises(function() simulate(M) end, "50 levels deep")
     works_still()

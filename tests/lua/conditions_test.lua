@@ -2,7 +2,7 @@
 -- 172-conditions-on-the-motion.lua has a bang-bang motion and a clearance with their known periods.
 dofile "tests/lua/support.lua"
 
-test("an encoder is a spring in steps, whose energy is kept", function()
+test("an encoder acts as a spring in steps, whose energy is conserved", function()
     local d, K, theta0 = 0.05, 3, 0.52
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -K * math.floor(theta / d) * d end, theta0 = theta0, t_end = 10 }
     local function energy(theta, v)
@@ -35,7 +35,7 @@ test("short visits beyond a condition in the rate of a state are not missed", fu
     end
 end)
 
-test("a few small jumps in a row are jumps, and no noise", function()
+test("a few small jumps in a row are treated as jumps, not as noise", function()
     local small = 1e-6
     for _, d in ipairs { 1 / 2, 1 / 16 } do
         local run = system { I = 1, k = 0 }:simulate { M = function(_, theta) return 1 + small * math.floor(theta / d) end, velocity0 = 1, t_end = 1 }
@@ -46,7 +46,7 @@ test("a few small jumps in a row are jumps, and no noise", function()
     end
 end)
 
-test("read and sampled functions make the same motion", function()
+test("functions that are read and sampled give the same motion", function()
     math.randomseed(3)
     local r = math.random
     for _ = 1, 20 do
@@ -74,7 +74,7 @@ test("read and sampled functions make the same motion", function()
     end
 end)
 
-test("what jumps by the time is found beside the motion, too, and in the rate of a state", function()
+test("a jump at a given time is found in a function that also depends on the motion, and in the rate of a state", function()
     -- u goes to 0 for 0.3 of each unit of time, and to 1 for the rest
     local calls = 0
     local function rate(t, theta, velocity, z)
@@ -101,7 +101,7 @@ test("what jumps by the time is found beside the motion, too, and in the rate of
     assert(asked < 600 * 51, asked)  -- of so many jumps
 end)
 
-test("a jump that drives the motion back from both sides ends the run with a sentence if it is sampled", function()
+test("a sampled jump that drives the motion back from both sides ends the run with an explanation", function()
     local f = function(_, theta, velocity) return theta + velocity > 0 and -1 or 1 end
     local run = system { I = 1, k = 1 }:simulate { M = unread(f), theta0 = 2.7, t_end = 40 }
     equal(run.status, "failed")
@@ -109,7 +109,7 @@ test("a jump that drives the motion back from both sides ends the run with a sen
     near(run.t_end, 4.8154495, 1e-6)
 end)
 
-test("functions that are equal make the same motion, however their conditions are written", function()
+test("equal functions give the same motion, however their conditions are written", function()
     local pairs_of_functions = {
         -- at a turn, 10 + velocity has lost the digits of what sets off
         { function(_, _, velocity) return -0.2 * math.floor((10 + velocity) / 0.5) end,
@@ -167,7 +167,7 @@ test("a condition of |theta| is found on both sides of theta = 0, for a rate and
     near(two[1], two[2], 1e-11)
 end)
 
-test("what jumps along with a condition, or only touches its limit there, does not chatter", function()
+test("a function that jumps at the zero of a condition, or only touches its limit there, does not chatter", function()
     -- the velocity of b passes 0, where |velocity| > 0 is false for no time
     local ends = {}
     for i, M in ipairs {
@@ -181,7 +181,7 @@ test("what jumps along with a condition, or only touches its limit there, does n
     near(ends[1], ends[2], 1e-12)
 end)
 
-test("what a long stretch has crossed is crossed for the short one behind it, too", function()
+test("a condition crossed on a long stretch stays crossed on the short stretch after it", function()
     -- behind theta = 0 the next stretch ends at t = 1
     local ends = {}
     for i, low in ipairs {
@@ -195,7 +195,7 @@ test("what a long stretch has crossed is crossed for the short one behind it, to
     near(ends[1], ends[2], 1e-11)
 end)
 
-test("digits that somebody cuts off are noise, not conditions", function()
+test("a function that truncates its digits is noise, not a condition", function()
     local run = system { I = 1, k = 1 }:simulate { M = function(_, theta) return -math.floor(theta * 1e9) / 1e9 end, theta0 = 1, t_end = 1 }
     near(run.theta[#run.theta], math.cos(math.sqrt(2)), 1e-7)
     says(run, "which are sampled")

@@ -20,7 +20,7 @@ for name, integrator in pairs {
     dopri5 = integrator.dopri5 { tolerance = 1e-14 },
     dinal1989 = integrator.dinal1989 { h = 0.01 },
 } do
-    test("a run that goes on is the run that never ended: " .. name, function()
+    test("a continued run equals an uninterrupted one: " .. name, function()
         local whole = nd:simulate { M = M, theta0 = 2, t_end = 12, dt = 0.1, integrator = integrator }
         local first = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1, integrator = integrator }
         local longer = first:continue { t_end = 7 }:continue { t_end = 12 }
@@ -32,7 +32,7 @@ for name, integrator in pairs {
     end)
 end
 
-test("a list of times goes on with another", function()
+test("a run with a list of times can be continued with another list", function()
     local first = nd:simulate { M = M, theta0 = 2, times = { 0.5, 1, 2 } }
     local whole = nd:simulate { M = M, theta0 = 2, times = { 0.5, 1, 2, 3, 5, 7.7 } }
     same_rows(first:continue { times = { 3, 5, 7.7 } }, whole)
@@ -43,7 +43,7 @@ test("a list of times goes on with another", function()
     near((bare:at(7.7)), whole.theta[6], 1e-12)
 end)
 
-test("what M interrupted goes on to where it should have ended", function()
+test("a run interrupted by an error of M can be continued to its end", function()
     local broken = true
     local function fragile(t)
         if broken and t > 4.321 then error "the wire broke" end
@@ -66,7 +66,7 @@ test("what M interrupted goes on to where it should have ended", function()
     end
 end)
 
-test("a run that goes on can be saved, repeated and asked for its energy and story", function()
+test("a continued run can be saved and repeated, and has energy and story", function()
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
     local _, file = reloaded(longer)
     has(read(file), "t_end = 8, dt = 0.1")
@@ -76,20 +76,20 @@ test("a run that goes on can be saved, repeated and asked for its energy and sto
     equal(longer:explain(), whole:explain())
 end)
 
-test("a run without dense output goes on without", function()
+test("a run without dense output is continued without it", function()
     local first = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1, dense = false }
     local longer = first:continue { t_end = 6 }
     raises_here(function() longer:energy() end, "dense")
     same_rows(longer, nd:simulate { M = M, theta0 = 2, t_end = 6, dt = 0.1 })
 end)
 
-test("several bodies go on without dense output where the first part has none", function()
+test("a run of several bodies is continued without dense output if the first part has none", function()
     local rig = system { bodies = { a = { I = 1, k = 1 } } }
     local longer = rig:simulate { theta0 = { a = 1 }, t_end = 3, dense = false }:continue { t_end = 6 }
     for _, t in ipairs { 2, 5 } do raises_here(function() longer:at(t) end, "dense = false") end
 end)
 
-test("rows that memory can not hold are refused, of one body and of several, from the start and going on", function()
+test("rows that exceed the memory are refused, of one body and of several, in a new run and a continued one", function()
     local body = { I = 1, k = 1, C = 0.1 }
     local varying = { I = 1, k = 1, C = 0.1, Rd = function() return 0 end }
     for _, sys in ipairs { system(body), system(varying), system { bodies = { a = body } } } do
@@ -101,7 +101,7 @@ test("rows that memory can not hold are refused, of one body and of several, fro
     end
 end)
 
-test("a run that ends at a wall, or as near to it as numbers come, goes on", function()
+test("a run that ends at a wall, or as near to it as doubles allow, can be continued", function()
     for i = 1, 12 do
         local walled = system { I = 1, k = 1, walls = { lower = -0.1 - 0.00137 * i, restitution = 0.5 } }
         local function run(t_end) return walled:simulate { M = -0.5, theta0 = 0.3, t_end = t_end, dt = 0.5 } end
@@ -118,7 +118,7 @@ test("a run that ends at a wall, or as near to it as numbers come, goes on", fun
     end
 end)
 
-test("acts that die out do so at the same time wherever the run went on", function()
+test("acts that die out do so at the same time wherever the run was continued", function()
     local function run(t_end)
         return system { I = 1, k = 1 }:simulate {
             M = 1, t_end = t_end, dt = 0.25,
@@ -136,7 +136,7 @@ test("acts that die out do so at the same time wherever the run went on", functi
     end
 end)
 
-test("wrong uses get a sentence", function()
+test("wrong uses of continue raise errors", function()
     local run = nd:simulate { M = M, theta0 = 2, t_end = 3, dt = 0.1 }
     raises_here(function() run:continue() end, "reached its end at t = 3", "run:continue{ t_end = 40 }")
     refuses(function(o) run:continue(o) end, {
@@ -158,7 +158,7 @@ test("wrong uses get a sentence", function()
     raises_here(function() loaded:continue { t_end = 5 } end, "read from a file")
 end)
 
-test("a run that goes on has the gap of its parts", function()
+test("a continued run has the greatest gap of its parts", function()
     local run = system { bodies = { a = { I = 1, k = 4 } } }:simulate { M = { a = unread(math.sin) }, t_end = 10 }
     local gap = run.gap
     equal(run:continue { t_end = 10.01 }.gap, gap)

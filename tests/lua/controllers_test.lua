@@ -1,7 +1,7 @@
 -- Controllers that hold what they give: between their instants and switches the motion is a damped oscillation about a place.
 dofile "tests/lua/support.lua"
 
-test("between the instants of a sampled controller arcs say what panels say, at every damping", function()
+test("between the instants of a sampled controller exact and spectral agree, at every damping", function()
     local hair = 1e-12
     for name, p in pairs{
         dry = {}, undamped = { C = 0 }, late = { every = 0.25, delay = 0.1 }, later = { every = 0.2, delay = 0.31, P = 0.2 },
@@ -22,7 +22,7 @@ test("between the instants of a sampled controller arcs say what panels say, at 
     end
 end)
 
-test("a sampled controller is called once an instant, in order, and is late by its delay", function()
+test("a sampled controller is called once an instant, in order, and its output is delayed", function()
     local asked = {}
     local M = excitation.sampled(function(t) asked[#asked + 1] = t return t < 3 and 0.2*(1 + t) or -0.9 end, { every = 1, delay = 0.25 })
     local run = system{ I = 1, k = 0, Rd = 0.1, Re = 0.5 }:simulate{ M = M, t_end = 4.5, dt = 0.5 }
@@ -45,7 +45,7 @@ test("a stiff state, the lag of an actuator, costs no accuracy", function()
     near(run.states.u, run.t:sin()/2, 1e-10)
 end)
 
-test("after a beginning that is over in a moment the run goes on as if it had not been", function()
+test("after a very short transient the run continues at normal speed", function()
     for _, lag in ipairs { 1e-3, 1e-6, 1e-9 } do
         local calls = 0
         local run = system{ I = 1, k = 0 }:simulate{ t_end = 3, dt = 3, M = function(_, _, _, z) return z.u end,
@@ -58,7 +58,7 @@ test("after a beginning that is over in a moment the run goes on as if it had no
     end
 end)
 
-test("a run that begins later meets the instants that follow, and a relay that is beyond its threshold from the start", function()
+test("a run that begins later meets the instants that follow, and a relay beyond its threshold switches at the start", function()
     local at = {}
     local M = excitation.sampled(function(t) at[#at + 1] = t return 0 end, { every = 0.3, at = 0.1 })
     system { I = 1, k = 1 }:simulate { M = M, t_start = 0.65, t_end = 1.5 }

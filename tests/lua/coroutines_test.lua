@@ -1,7 +1,7 @@
 -- The functions of coroutines, which the program replaces so that Ctrl-C and limits stop what runs in them.
 dofile "tests/lua/support.lua"
 
-test("coroutine functions behave as those of Lua", function()
+test("coroutine functions behave as in standard Lua", function()
     equal(select("#", coroutine.resume(coroutine.create(function(...) return ... end), 1, nil, nil)), 4)
     local wrapped = coroutine.wrap(function(a) local b = coroutine.yield(a + 1) error("bad " .. b) end)
     equal(wrapped(1), 2)

@@ -25,7 +25,7 @@ test("stick-slip on a belt has the stick time, period and amplitude of the close
     end
 end)
 
-test("a free motion ends at rest, and friction says where it may stand", function()
+test("a free motion ends at rest, and the range of rest is known", function()
     local s = system{ I = 1, k = 4, Rd = 1, Re = 1.2 }:steady{ theta0 = 3.1 }
     equal(s.status, "rest")
     near(s.rest.lower, -0.3, 1e-12)
@@ -54,7 +54,7 @@ test("van der Pol's cycle has its known period and amplitude, from within and fr
     end
 end)
 
-test("a clock that is kicked at each passage has the amplitude of its balance", function()
+test("an oscillator kicked at each passage has the amplitude at which kick and damping balance", function()
     local C, kick = 0.1, 0.05
     local damped = (1 - C ^ 2 / 4) ^ 0.5
     local period = 2 * math.pi / damped
@@ -69,7 +69,7 @@ test("a clock that is kicked at each passage has the amplitude of its balance", 
     near(s.multipliers[1].abs, math.exp(-C / 2 * period), 1e-7)
 end)
 
-test("dead times and sampled controllers have the cycles that long runs come to", function()
+test("dead times and sampled controllers have the cycles that long runs reach", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.02 }
     local M = excitation.delayed(function(_, theta) return -3 * math.sin(theta) end, { by = 0.5 })
     local s = sys:steady{ M = M, theta0 = 0.5 }
@@ -85,7 +85,7 @@ test("dead times and sampled controllers have the cycles that long runs come to"
     near(run.theta[2001], run.theta[1001], 1e-9)
 end)
 
-test("two controllers that sample have a cycle of whole common intervals, and of as few as a long run returns after", function()
+test("two sampled controllers have a cycle of whole common intervals, the shortest that a long run repeats", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.02 }
     -- 3 x 0.2 is not 0.6, but one rounding more: of the common instants, some come before and some after both have sampled
     for _, case in ipairs{ { 0.375, 0.25, 0.75 }, { 0.3, 0.2, 0.6 }, { 0.15, 0.1, 0.3 } } do
@@ -102,7 +102,7 @@ test("two controllers that sample have a cycle of whole common intervals, and of
     end
 end)
 
-test("a motion that a sampled controller lets die out ends at rest, where the springs balance", function()
+test("a motion that dies out under a sampled controller ends at rest, where the springs balance", function()
     local sys = system{ I = 1.23, k = 5.58, C = 0.64, spring = spring.polynomial{ [3] = 0.88 } }
     for _, aim in ipairs{ 0, 1 } do
         local M = excitation.sampled(function(_, theta, velocity) return 0.3 * (aim - theta) - 0.1 * velocity end, { every = 0.486 })
@@ -112,7 +112,7 @@ test("a motion that a sampled controller lets die out ends at rest, where the sp
     end
 end)
 
-test("belt, base, states and acts stand beside a periodic M", function()
+test("a periodic M may be combined with belt, base, states and acts", function()
     local sys = system{ I = 1, k = 8, C = 0.6, Rd = 0.15 }
     local wave = excitation.harmonic{ amplitude = 1.2, omega = 4 }
     local s = sys:steady{ M = wave, belt = 0.35 }
@@ -136,7 +136,7 @@ test("belt, base, states and acts stand beside a periodic M", function()
     end
 end)
 
-test("a cycle and the rest beside it are each other's only others", function()
+test("a cycle and the rest beside it are reported as each other's only others", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }
     local squeal, slides = sys:steady{ belt = 0.2, theta0 = 0.15, velocity0 = 0.2 }, sys:steady{ belt = 0.2 }
     equal(squeal.status, "steady")
@@ -169,7 +169,7 @@ test("a function of the time needs a period, and one that does not depend on it 
         "the relay looks at 'x'")
 end)
 
-test("an event that only looks changes nothing of the cycle, nor of its story", function()
+test("an event without an act changes neither the cycle nor its story", function()
     local sys = system { I = 1, k = 4, Rd = 0.3, Re = 0.6 }
     local options = { belt = 0.1, t_end = 60 }
     local watched = merged(options, { events = { { when = function(t, theta) return theta - 0.1 end } } })

@@ -35,7 +35,7 @@ test("rows are filtered by a function or a mask, and sorted by a column with nan
     raises_here(function() d:filter(vector{ 1 }) end, "the vector has 1 numbers, but there are 4 rows")
 end)
 
-test("what is saved reads back to the last bit: gaps, infinities, words that look like numbers", function()
+test("saved data read back to the last bit: gaps, infinities, words that look like numbers", function()
     local d = data{ x = { 1/3, 0/0, -1/0 }, w = { "1.5", "a, \"b\"", "" }, ["a name; #2"] = { 1e-320, -0.0, 1e300 } }
     local back = reloaded(d)
     equal(table.concat(back.names, "|"), table.concat(d.names, "|"))
@@ -45,7 +45,7 @@ test("what is saved reads back to the last bit: gaps, infinities, words that loo
     equal(back["a name; #2"], d["a name; #2"])
 end)
 
-test("files of others: decimal commas, empty fields, words; csv_test.cpp has the numbers", function()
+test("files of other programs may have decimal commas, empty fields and words; csv_test.cpp has the numbers", function()
     equal(load("t,x\n0,1\n1,\n2,nan\n").t, vector{ 0, 1, 2 })
     local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
     equal(d["Time (s)"], vector{ 0.5, 1 })
@@ -85,7 +85,7 @@ test("a line of units may have empty cells, also beside a column of words", func
     equal(load("t;note\n;start\n1;\n2;end\n").note[1], "start")
 end)
 
-test("a log as it comes: lines before it, names, units, disorder, duplicates and a cut end", function()
+test("a raw log may have lines before it, names, units, disorder, duplicates and a cut end", function()
     local function log_of(text, options)
         local name = temporary ".csv"
         write(name, text)
@@ -133,7 +133,7 @@ test("words between the names and the numbers are units, unless there are other 
     equal(#load("a,b\nc,d\n"), 1)
 end)
 
-test("events are data: columns, rows, save and load", function()
+test("events have columns and rows, and can be saved and loaded", function()
     local run = nondimensional{ friction_ratio = 0.167 }:simulate{ velocity0 = 2*math.pi, t_end = 3, dt = 1 }
     local events = run.events
     equal(#events.theta, #events)
@@ -145,7 +145,7 @@ test("events are data: columns, rows, save and load", function()
     raises(function() return events.tetha end, "did you mean 'theta'?")
 end)
 
-test("a picture of columns", function()
+test("data:plot draws columns", function()
     local d = data{ r = { 1, 2, 3 }, A = { 1, 0/0, 3 }, B = { 2, 2, 2 }, w = { "a", "b", "c" } }
     has(d:plot{ x = "r", y = { "A", "B" }, show = false }, "B")
     has(d:plot{ x = "r", style = "points", title = "T", show = false }, "T")
@@ -158,7 +158,7 @@ test("a picture of columns", function()
     raises_here(function() data{ r = {}, A = {} }:plot() end, "no rows")
 end)
 
-test("what is no data is told in a sentence", function()
+test("a value that is not data is refused with a reason", function()
     refuses(data, {
         { {}, "there is no column" },
         { { a = 3 }, "a must be a vector, or a table of numbers or of strings, got 3" },

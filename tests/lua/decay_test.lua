@@ -60,7 +60,7 @@ test("motions of smooth springs, drags and states without dry friction die out t
     end
 end)
 
-test("the steps of a spring's rounding are no jump, whatever else has acted before", function()
+test("rounding of a spring's steps is not taken for a jump, whatever has acted before", function()
     local exp = math.exp
     for _, case in ipairs { { 1.0094667454716, 0.078544754255563, 0.1118 }, { 1.4622475993354, 0.0944729, -0.1015 },
         { 0.41937436340377, 0.1035067, -0.17 }, { 1.2221352237742, 0.2781475, 0.06455 } } do
@@ -74,7 +74,7 @@ test("the steps of a spring's rounding are no jump, whatever else has acted befo
     end
 end)
 
-test("a smooth motion that dies out follows its closed form down to rounding, and goes on from there", function()
+test("a smooth motion that dies out follows its closed form down to rounding, and its run can be continued", function()
     -- v' = 1 - (1 + v)^2 is solved by 1 + v = (1 + a exp(-2 t)) / (1 - a exp(-2 t)) with a = v0 / (2 + v0).
     local v0 = 0.5
     local a = v0 / (2 + v0)
@@ -111,7 +111,7 @@ test("a smooth motion that starts near the rounding of its functions, or below i
     end
 end)
 
-test("an M of few digits is followed within its noise when the motion has died out", function()
+test("an M with few digits is followed within its noise when the motion has died out", function()
     local function rounded(x) return math.floor(x * 1e10 + 0.5) / 1e10 end
     local M = unread(function(_, _, v) return rounded(1 - (1 + v) ^ 2) end)
     local run = system { I = 1, k = 1 }:simulate { theta0 = 0.001, t_end = 50, times = { 0, 50 }, M = M }
@@ -120,7 +120,7 @@ test("an M of few digits is followed within its noise when the motion has died o
     near(run.theta[2], 0, 1e-9)
 end)
 
-test("a motion ends neither where a state has died out below all normal numbers, nor where its rate is rounding", function()
+test("a run continues when a state decays to denormal numbers, or its rate is rounding", function()
     local function ends(system_of, o)
         local run = system(system_of):simulate(o)
         assert(run.t_end == o.t_end, run.outcome)

@@ -21,7 +21,7 @@ end
 
 local tolerances = { 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10 }
 
-test("against the closed form of a free oscillation the error is of order 5 and follows the tolerance", function()
+test("the error against the closed form of a free oscillation is of order 5 and follows the tolerance", function()
     local sys, work, errors = system { I = 1, k = 4, C = 0.2 }, {}, {}
     local w = math.sqrt(4 - 0.01)
     for i, tolerance in ipairs(tolerances) do
@@ -86,7 +86,7 @@ local systems = {
 }
 
 for name, case in pairs(systems) do
-    test("the events are those of spectral, and the error falls with the tolerance: " .. name, function()
+    test("the events are those of spectral, and their error falls with the tolerance: " .. name, function()
         local sys = case.system()
         local function run(method) return sys:simulate(merged(case.options, { dt = 0.25, integrator = method })) end
         local right = run(integrator.spectral {})
@@ -113,14 +113,14 @@ end
 
 local belted = nondimensional { zeta = 0.02, friction_ratio = 0.3, breakaway_ratio = 0.45 }
 
-test("what sticks moves with the belt to the last digit", function()
+test("a sticking mass moves with the belt to the last digit", function()
     local run = belted:simulate { belt = 0.5, t_end = 10, dt = 0.01, integrator = by(1e-4) }
     local stuck = 0
     for _, v in ipairs(run.velocity) do if v == 0.5 then stuck = stuck + 1 end end
     assert(stuck > 200, stuck)
 end)
 
-test("a function that is not read is sampled as closely as told, and a pulse that would fall between is not", function()
+test("an unread function is sampled at most run.gap apart, so that wider pulses are found; a formula is proven in between", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
     local smooth = unread(function(t) return math.sin(7 * t) end)
     local run = sys:simulate { M = smooth, theta0 = 1, t_end = 5, dt = 0.1, integrator = by(1e-7) }
@@ -133,7 +133,7 @@ test("a function that is not read is sampled as closely as told, and a pulse tha
     equal(sys:simulate { M = function(t) return math.sin(7 * t) / (2 + math.cos(t)) end, t_end = 5, integrator = by(1e-7) }.gap, nil)
 end)
 
-test("noise in M does not make steps endless", function()
+test("noise in M does not cause endless steps", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
     local function noisy(t) return math.sin(7 * t) + 1e-6 * math.sin(1e9 * t * t) end
     local run = sys:simulate { M = unread(noisy), theta0 = 1, t_end = 5, dt = 0.1, integrator = by(1e-9) }
@@ -141,7 +141,7 @@ test("noise in M does not make steps endless", function()
     near(run.theta, sys:simulate { M = function(t) return math.sin(7 * t) end, theta0 = 1, t_end = 5, dt = 0.1 }.theta, 1e-6)
 end)
 
-test("a run goes on, is saved and made again, and has its energy and its story", function()
+test("a run can be continued, saved and repeated, and has energy and story", function()
     local run = belted:simulate { belt = 0.5, t_end = 12, dt = 0.1, integrator = by(1e-9) }
     equal(tostring(run.integrator), "integrator.dopri5{ tolerance = 1e-09 }")
     equal(run.integrator.tolerance, 1e-9)
@@ -160,7 +160,7 @@ test("a run goes on, is saved and made again, and has its energy and its story",
     says(run, "It stuck to the belt at t = 0.042965 at theta = 0.010827")
 end)
 
-test("options that make no sense are refused in a sentence", function()
+test("options without sense are refused with a reason", function()
     refuses(integrator.dopri5, {
         { {}, "tolerance" },
         { { tolerance = 0 }, "tolerance = 0 must lie between 0 and 1" },

@@ -4,7 +4,7 @@ dofile "tests/lua/support.lua"
 local both_engines = { integrator.spectral {}, integrator.rk4 { h = 1e-3 } }
 local dry = system { I = 1, k = 40, C = 0.4, Rd = 0.3, Re = 0.45 }
 
-test("events at one instant are told in the order written, and each does what it does", function()
+test("events at one instant are reported in the order written, and all their acts take effect", function()
     for _, engine in ipairs(both_engines) do
         local run = dry:simulate {
             theta0 = 1, t_end = 0.3, dt = 0.3, integrator = engine, events = {
@@ -22,7 +22,7 @@ test("events at one instant are told in the order written, and each does what it
     end
 end)
 
-test("where an act leaves the mass at rest, what follows is no turn of its own", function()
+test("motion that begins after an act has left the mass at rest does not begin with a turn", function()
     local run = dry:simulate {
         theta0 = 1, t_end = 0.2, dt = 0.2,
         events = { { when = function(t) return t - 0.05 end, act = function() return -0.5, 0 end } },
@@ -31,7 +31,7 @@ test("where an act leaves the mass at rest, what follows is no turn of its own",
     assert(run.velocity[#run] > 0)
 end)
 
-test("rk4 takes an instant that rounding puts beside its step for the end of the step", function()
+test("rk4 treats an instant that differs from the end of its step by rounding as that end", function()
     local M = excitation.sampled(function(t, theta, v) return -8 * theta - 2 * v + 3 end, { every = 0.05, delay = 0.05 })
     local task = { M = M, theta0 = 0.5, t_end = 3, dt = 3 }
     local right = dry:simulate(task) -- arcs between the instants, right to rounding
@@ -43,12 +43,12 @@ test("rk4 takes an instant that rounding puts beside its step for the end of the
     end
 end)
 
-test("bounces to and fro in no room end the run", function()
+test("bounces between walls without a gap end the run", function()
     local caught = system { I = 1, k = 0, walls = { lower = 0, upper = 1e-15, restitution = 1 } }:simulate { velocity0 = 1, t_end = 1, dt = 1 }
     has(caught.outcome, "endlessly at one time")
 end)
 
-test("a belt that asks for just what sticking holds takes the mass along", function()
+test("a belt that requires exactly the torque that sticking holds carries the mass", function()
     for _, belt in ipairs { excitation.ramp { slope = 0.5 }, function(t) return 0.5 * t end } do
         for _, engine in ipairs(both_engines) do
             local run = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }:simulate { belt = belt, t_end = 3, dt = 3, integrator = engine }
@@ -60,7 +60,7 @@ test("a belt that asks for just what sticking holds takes the mass along", funct
     near(lost.theta[2], 0.3 * 4.5, 1e-12) -- it slides from the start
 end)
 
-test("what comes again after less than times can tell apart is refused", function()
+test("events in intervals below the resolution of time are refused", function()
     local function refused(task, option)
         task.t_end, task.dt = 1, 1
         local ok, problem = pcall(dry.simulate, dry, task)
@@ -73,7 +73,7 @@ test("what comes again after less than times can tell apart is refused", functio
     refused({ belt = excitation.square { period = 1e-300 } }, "period")
 end)
 
-test("a sine that turns between two times is refused, by every integrator", function()
+test("a sine that oscillates between two representable times is refused, by every integrator", function()
     for _, engine in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
         for _, M in ipairs { excitation.harmonic { omega = 1e22 }, excitation.half_sine { width = 1 } + excitation.harmonic { frequency = 1e15 } } do
             local ok, problem = pcall(dry.simulate, dry, { M = M, t_end = 10, dt = 1, integrator = engine })
@@ -83,13 +83,13 @@ test("a sine that turns between two times is refused, by every integrator", func
     end
 end)
 
-test("what has decayed to nothing holds no run up", function()
+test("a motion that has decayed to nothing does not slow a run down", function()
     local free = system { I = 1, k = 1, Rd = 0.1 }
     local function last(M) return free:simulate { M = M, theta0 = 1, t_end = 10, dt = 10 }.theta[2] end
     near(last(excitation.exponential { tau = 1e-20 }), last(excitation.constant { amplitude = 0 }), 1e-15)
 end)
 
-test("a mass at rest waits for a slow load as long as that takes", function()
+test("a mass at rest waits for a slow load as long as necessary", function()
     local slip = math.pi / 6 * 1e12
     local run = system { I = 1, k = 1, Rd = 1 }:simulate { M = excitation.harmonic { amplitude = 2, omega = 1e-12 }, t_end = slip + 10, dt = 1e12 }
     equal(#run.events, 1)

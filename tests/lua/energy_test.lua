@@ -6,7 +6,7 @@ local M = excitation.harmonic { frequency = 1 }
 local run = sys:simulate { M = M, theta0 = 1, t_end = 40, dt = 0.01 }
 local energy = run:energy()
 
-test("the total adds up, and says how well", function()
+test("the energies add up, and the balance states how well", function()
     local total = energy.total
     near(total.input - total.kinetic - total.spring - total.viscous - total.dry, total.error, 1e-12 * total.flow)
     assert(total.closure <= 1e-12 and total.flow > total.input)
@@ -24,7 +24,7 @@ local function sums_of(half_cycles, more)
     return sums
 end
 
-test("half cycles are a list of tables, the same list each time, that make up the total", function()
+test("half cycles are a list of tables, the same list each time, that sum to the total", function()
     local half_cycles = energy.half_cycles
     equal(energy.half_cycles, half_cycles)
     for i, half in ipairs(half_cycles) do
@@ -39,7 +39,7 @@ test("half cycles are a list of tables, the same list each time, that make up th
     near(half_cycles[#half_cycles - 1].dry, 2 * sys.Rd * X, 1e-9)
 end)
 
-test("columns stand beside the rows and end at the total", function()
+test("columns have the values at the rows and end at the total", function()
     assert(energy.t == run.t)
     for _, name in ipairs { "input", "viscous", "dry" } do
         local column = energy[name]
@@ -53,7 +53,7 @@ test("columns stand beside the rows and end at the total", function()
     assert(energy.dry:diff() >= -1e-14, "dry friction gives nothing back")
 end)
 
-test("it shows itself as a small table", function()
+test("energy prints as a small table", function()
     local text = tostring(energy)
     has(text, "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles")
     for line in text:gmatch("[^\n]+") do
@@ -76,7 +76,7 @@ test("misspelt names are errors with a suggestion", function()
     raises_here(function() energy.input = 1 end, "cannot be changed")
 end)
 
-test("what was done of a broken run has its energy", function()
+test("the complete part of a failed run has its energy", function()
     local ok = pcall(function()
         sys:simulate { M = function(t) assert(t < 5) return math.sin(6 * t) end, theta0 = 1, t_end = 10, dt = 0.1 }
     end)
@@ -85,7 +85,7 @@ test("what was done of a broken run has its energy", function()
     assert(part.total.dry > 1 and part.total.closure <= 1e-12)
 end)
 
-test("half cycles on a belt run from one extreme of theta to the next and make up the total", function()
+test("half cycles on a belt run from one extreme of theta to the next and sum to the total", function()
     local block = system { I = 1, k = 8, C = 0.6, Rd = 0.15, Re = 0.3 }
     for _, belt in ipairs { 0.1, 0.35, 2, excitation.harmonic { amplitude = 0.3, omega = 1.7 } } do
         local driven = block:simulate { M = excitation.harmonic { amplitude = 1.2, omega = 4 }, belt = belt, t_end = 30, dt = 0.5 }

@@ -35,7 +35,7 @@ local parts = {
     },
 }
 
-test("the energy of each part of a rig is its row in the energy of all", function()
+test("the energy of each part of a system is its row in the energy of all", function()
     local named = { "input", "base", "kinetic", "spring", "viscous", "dry", "belt", "impacts" }
     for kind, given in pairs(parts) do
         local drive = { M = { a = sine }, velocity0 = { b = 0.5 }, t_end = 12, dt = 0.1 }
@@ -159,7 +159,7 @@ local acting = {
     end,
 }
 
-test("a worker of a sweep gives what the call gives, for each controller and native term with its options", function()
+test("a worker of a sweep gives the same result as a direct call, for each controller and native term with its options", function()
     for kind, make in pairs(acting) do
         local M, sys = make(), system(a)
         local function ask()

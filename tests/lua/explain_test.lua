@@ -8,7 +8,7 @@ local function told(run)
     return (run:explain():gsub("%s+", " "))
 end
 
-test("lines fit a terminal and there are not too many, however long the run", function()
+test("the story has short lines and not too many, however long the run", function()
     local run = nondimensional { friction_ratio = 0.836 }:simulate {
         M = excitation.harmonic { frequency = 1 }, theta0 = 1, t_end = 1000, dt = 1 }
     local count = 0
@@ -21,7 +21,7 @@ test("lines fit a terminal and there are not too many, however long the run", fu
     says(run, "... 1995 more ...")
 end)
 
-test("a run read from a file, one of 1989 and a broken one have a story, too", function()
+test("a run read from a file, one of 1989 and a failed one have a story, too", function()
     says(reloaded(free), "read from a file", "The velocity changes sign 3 times")
     says(nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01, integrator = integrator.dinal1989 { h = 0.001 } },
         "integrated as in 1989")
@@ -31,7 +31,7 @@ test("a run read from a file, one of 1989 and a broken one have a story, too", f
     says(dinal.partial, "The run stopped early, at t = 3: M failed")
 end)
 
-test("the story of a function says how closely it was looked at, and never that nothing moved the mass", function()
+test("the story of a function says how closely it was sampled, and never that nothing moved the mass", function()
     local sys = nondimensional { friction_ratio = 0.3 }
     local function pulse(t) return ({ t > 3.001 and t < 3.002 and 500 or 0 })[1] end -- the table: not read
     local unseen = sys:simulate { M = pulse, t_end = 10, dt = 1 }
@@ -72,7 +72,7 @@ test("the story says once whether M was read, and which line was the reason wher
         "The belt is read", "The base is evaluated in Lua")
 end)
 
-test("an M that is rough on every scale is told once, in the outcome, the summary and the story", function()
+test("an M that is rough on every scale is reported once, in the outcome, the summary and the story", function()
     local function single(x) return (string.unpack("f", string.pack("f", x))) end
     local run = nondimensional { zeta = 0.1 }:simulate { M = function(t) return single(math.sin(5 * t)) end, t_end = 10, dt = 1 }
     assert(run.outcome:find("^reached the end, within the noise of the torques, %d"), run.outcome)
@@ -80,7 +80,7 @@ test("an M that is rough on every scale is told once, in the outcome, the summar
     says(run, "The torques are noisy (about")
 end)
 
-test("what a very fine encoder costs is told in the summary and the story", function()
+test("the cost of a very fine encoder is reported in the summary and the story", function()
     local function encoder(step)
         return function(t, theta, v) return math.sin(t) - math.floor(theta / step) * step end
     end
@@ -92,7 +92,7 @@ test("what a very fine encoder costs is told in the summary and the story", func
     has_not(sys:simulate { M = encoder(1e-2), theta0 = 0.1, t_end = 2, dt = 1 }, "jumped")
 end)
 
-test("what a support and a belt do is part of the pull, and named", function()
+test("the torques of a support and a belt are part of the pull, and named", function()
     local free = system { I = 2, k = 0, Rd = 0.3, Re = 0.5 }:simulate { base = excitation.half_sine { width = 1 }, t_end = 5, dt = 1 }
     -- 2 sin(pi t) = Re at asin(.25)/pi
     says(free, "The support accelerates", "until t = 0.080431, when this torque exceeded Re and it slipped backward.")
@@ -107,7 +107,7 @@ test("what a support and a belt do is part of the pull, and named", function()
         "until t = 1, when the pull jumped so that |M - I a - k theta| = 1 > Re = 0.5, and it slipped backward.")
 end)
 
-test("outputs that are held, and relays of the motion, hide no pulse", function()
+test("outputs that are held, and relays of the motion, cannot hide a pulse", function()
     local sys = system { I = 1, k = 1, Rd = 0.1 }
     for M, hides in pairs {
         [excitation.sampled(function(_, theta) return -theta end, { every = 0.5 })] = false,
@@ -120,7 +120,7 @@ test("outputs that are held, and relays of the motion, hide no pulse", function(
     end
 end)
 
-test("a belt that jumps, told or not, is what throws a mass off, and which way", function()
+test("a belt that jumps, announced or not, is named as the cause of a slip, with its direction", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, belt in ipairs { 0.2 + excitation.step { amplitude = -0.7, at = 1 }, function(t) return t < 1 and 0.2 or -0.5 end } do
         says(sys:simulate { velocity0 = 0.1, t_end = 10, dt = 0.5, belt = belt },
@@ -128,7 +128,7 @@ test("a belt that jumps, told or not, is what throws a mass off, and which way",
     end
 end)
 
-test("on a belt the extremes of theta are told, not where the sliding turns round", function()
+test("on a belt the extremes of theta are reported, not where the sliding reverses", function()
     local sys = system { I = 1, k = 8, C = 0.6, Rd = 0.15 }
     for _, dt in ipairs { 0.01, 60 } do
         local run = sys:simulate { M = excitation.harmonic { amplitude = 1.2, omega = 4 }, belt = 0.35, t_end = 60, dt = dt }
@@ -142,13 +142,13 @@ test("on a belt the extremes of theta are told, not where the sliding turns roun
     has_not(told(swinging:simulate(far)), "one way")
 end)
 
-test("a beat on a shaking base is no growth", function()
+test("a beat on a shaking base is not called growth", function()
     local run = system{ I = 1, k = 1, Rd = 0.01 }:simulate{ base = excitation.harmonic{ amplitude = 0.2, omega = 1.05 }, t_end = 40, dt = 0.1 }
     says(run, "The motion is not periodic so far")
     has_not(told(run), "The motion grows")
 end)
 
-test("the story has the numbers of a contact that is open at first, of the hardest impact and of both ways of a law", function()
+test("the story has the numbers of a contact that is open at first, of the hardest impact and of both sides of a law", function()
     local function normal(t) return t - 1 end
     says(system { I = 1, k = 1, Rd = 0.1, normal = normal }:simulate { theta0 = 1, t_end = 4 }, "It was open for 25 % of the time")
     local walls = { lower = -0.3, upper = 0.5, restitution = 0.9 }

@@ -2,7 +2,7 @@ dofile "tests/lua/support.lua"
 
 local stribeck = friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4 }
 
-test("a law is an option of a system, and the text of the system makes it again", function()
+test("a law is an option of a system, and the system's text reproduces it", function()
     for _, law in ipairs {
         stribeck, friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4, shape = 1 },
         friction.asymmetric { forward = { Rd = 0.1, Re = 0.3 }, backward = { Rd = 0.2 } },
@@ -20,7 +20,7 @@ test("a law is an option of a system, and the text of the system makes it again"
         "system{ I = 1, k = 1, Rd = 0.2, Re = 0.3 }")
 end)
 
-test("a law that fails, or is negative, is told with the speed, and what ran is kept", function()
+test("a law that fails, or is negative, is reported with the speed, and the rows until then are kept", function()
     local negative = system { I = 1, k = 1, friction = friction.law(function(speed) return 0.3 - speed end) }
     local ok, problem = pcall(negative.simulate, negative, { theta0 = 2, t_end = 20, dt = 0.01 })
     assert(not ok and tostring(problem):find("friction returned %-[%d.e-]+ at speed = 0%.%d+; it must return a finite number that is not negative"), problem)
@@ -30,7 +30,7 @@ test("a law that fails, or is negative, is told with the speed, and what ran is 
     raises_here(function() friction.law(3) end, "friction.law takes a function of the speed, got 3")
 end)
 
-test("what is wrong with a law is one sentence with the name of the option", function()
+test("each mistake in a law is one sentence with the name of the option", function()
     refuses(friction.stribeck, {
         { { Rd = 0.3, Re = 0.2, speed = 1 }, "friction.stribeck: Re = 0.2 must be at least Rd = 0.3" },
     })
@@ -47,7 +47,7 @@ test("what is wrong with a law is one sentence with the name of the option", fun
     raises_here(function() stribeck.Re = 2 end, "a friction cannot be changed")
 end)
 
-test("the museum piece and the closed forms include only Coulomb friction and the spring k theta, and no walls", function()
+test("dinal1989 and the closed forms accept only Coulomb friction and the spring k theta, and no walls", function()
     for option, only in pairs { friction = "only Coulomb friction", spring = "only the spring k theta", walls = "walls" } do
         local parts = { friction = stribeck, spring = spring.polynomial { [3] = 0.5 }, walls = { upper = 1 } }
         local sys = system { I = 1, k = 1, [option] = parts[option] }
@@ -58,7 +58,7 @@ test("the museum piece and the closed forms include only Coulomb friction and th
     end
 end)
 
-test("with makes the same system but for what is given", function()
+test("with makes the same system except for the given changes", function()
     local sys = system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }
     equal(tostring(sys:with { I = 3 }), "system{ I = 3, k = 8, C = 0.5, Rd = 1, Re = 1.5 }")
     equal(tostring(sys:with { Rd = 1.2 }), "system{ I = 2, k = 8, C = 0.5, Rd = 1.2, Re = 1.5 }")
@@ -71,7 +71,7 @@ test("with makes the same system but for what is given", function()
     raises_here(function() sys:with { friction = stribeck }:with { Rd = 2 } end, "the friction of this system is friction.stribeck{")
 end)
 
-test("k = 0 is a block: nothing that needs a period has a value", function()
+test("with k = 0 quantities that need a period have no value", function()
     local block = system { I = 2, k = 0, Rd = 0.3, Re = 0.4 }
     for _, name in ipairs { "omega0", "T0", "zeta", "omega1", "regime", "dead_zone" } do
         equal(block[name], nil)
@@ -88,7 +88,7 @@ test("k = 0 is a block: nothing that needs a period has a value", function()
     raises_here(function() block:simulate { t_end = 1, dt = 1, integrator = integrator.dinal1989 { h = 0.1 } } end, "divides by k")
 end)
 
-test("a law that jumps up, or begins infinitely steep, is told with its speed and a cure that works", function()
+test("a law that jumps up, or begins infinitely steep, is reported with its speed and a working remedy", function()
     local function block(law) return system { I = 1, k = 0, friction = law } end
     local jump = friction.law(function(v) return v < 0.5 and 0.3 or 0.6 end)
     local run = block(jump):simulate { M = 0.45, t_end = 5, dt = 1 }
@@ -143,7 +143,7 @@ test("a law in Lua moves a mass as the native law with the same numbers does", f
     end
 end)
 
-test("friction that rises right before a stop is felt, however low the speed", function()
+test("friction that rises right before a stop is found, however low the speed", function()
     local Rd, Re = 0.3, 0.6
     for _, speed in ipairs { 1e-3, 0.03 } do
         local lua = friction.law(function(v) return Rd + (Re - Rd) * math.exp(-(v / speed) ^ 2) end)
@@ -157,7 +157,7 @@ test("friction that rises right before a stop is felt, however low the speed", f
     end
 end)
 
-test("a law that bends costs at most 380 values of M a half swing, at any speed of its bend", function()
+test("a law with a corner costs at most 380 values of M a half swing, at any speed of its corner", function()
     for _, speed in ipairs { 0.002, 0.02, 0.3 } do
         local calls = 0
         local run = nondimensional { friction = friction.stribeck { Rd = 0.005, Re = 0.0125, speed = speed } }:simulate {
@@ -167,7 +167,7 @@ test("a law that bends costs at most 380 values of M a half swing, at any speed 
     end
 end)
 
-test("a law whose value at speed 0 is Re but for rounding holds what it says", function()
+test("a law whose value at speed 0 is Re to rounding holds the given Re", function()
     local law = friction.law(function(speed) return 0.1 + 0.2 * math.exp(-speed) end, { Re = 0.3 }) -- 0.1 + 0.2 > 0.3
     equal(law.Re, 0.1 + 0.2)
     raises_here(function() friction.law(function() return 0.3 + 1e-12 end, { Re = 0.3 }) end, "Re = 0.3 must be at least")
@@ -181,7 +181,7 @@ test("a system with Stribeck's law shows Rd, not the friction at standstill", fu
     has(told, "Rd = 0.3 while sliding, Re = 0.6 to break away. Friction falls from Re at rest to Rd at high speed.")
 end)
 
-test("what can hold nothing at rest goes with a torque that falls with the velocity", function()
+test("a contact that can hold nothing at rest slips under a torque that falls with the velocity", function()
     local function M(t, _, v) return t - v end
     local open = { I = 1, k = 0, Rd = 1, normal = 0 }
     local wanted = math.exp(-1)  -- t + exp(-t) - 1 is the velocity of v' = t - v

@@ -30,7 +30,7 @@ test("docs/manual.md and the pages of its topics are what the program prints", f
     has(pipe:read "a", "the manual has no page 'nothing': the pages are systems, ")
 end)
 
-test("the index of the manual names everything, and leads to what has options", function()
+test("the index of the manual names everything, and links to entries with options", function()
     for _, name in ipairs { "sys:simulate", "run:at", "vector.linspace", "sweep", "theory.den_hartog", "check", "r:save", "fit.silent" } do
         assert(index:find(" " .. name .. "[,.]") or index:find("[" .. name .. "](manual/", 1, true), name)
     end
@@ -43,7 +43,7 @@ test("the index of the manual names everything, and leads to what has options", 
     end
 end)
 
-test("the page has what takes no options as a row, and options of several calls once", function()
+test("the page has entries without options as rows, and options of several calls once", function()
     has(page, "\n- `sys.I -> number`: The moment of inertia.\n")
     has_not(page, "\n### sys.I\n")
     equal(select(2, index:gsub("\n%- `units`: names of the units, for cards", "")), 1)
@@ -61,7 +61,7 @@ test("every entry has a signature, a summary that is a sentence, and an example"
     end
 end)
 
-test("everything that Lua can see has an entry", function()
+test("everything visible in Lua has an entry", function()
     local described = {}
     for _, entry in ipairs(entries) do
         described[entry.heading] = true
@@ -97,7 +97,7 @@ test("everything that Lua can see has an entry", function()
     end
 end)
 
-test("every example runs on its own and prints what stands after -->", function()
+test("every example runs on its own and prints the text after -->", function()
     for _, entry in ipairs(entries) do
         local printed, wanted = {}, {}
         for line in entry.example:gmatch "[^\n]+" do
@@ -137,7 +137,7 @@ test("help knows functions, methods, modules, objects and names", function()
     has(output "help(help)", "help(x)")
 end)
 
-test("help searches words, suggests names, and shows where to begin", function()
+test("help searches words, suggests names, and has a starting point", function()
     local many = output 'help "the"'
     assert(select(2, many:gsub("\n  %S", "")) <= 10, many)
     has(many, "more: use more of the word")
@@ -160,12 +160,12 @@ test("help searches words, suggests names, and shows where to begin", function()
     has(output "help(function() end)", "no help")
 end)
 
-test("help shows what steers a terminal, and does not send it", function()
+test("help shows control sequences, and does not send them to the terminal", function()
     local said = output [[help("\27]0;title\7") help "how do I \27[2J"]]
     assert(not said:find "[%z\1-\9\11-\31\127]" and said:find([['\x1B]0;title\x07']], 1, true), said)
 end)
 
-test("an entry names what to look at next, and help knows these names", function()
+test("an entry names related entries, and help knows these names", function()
     -- What help prints about each of these names, by one process.
     local function pages(names)
         local list = {}

@@ -65,7 +65,7 @@ for what, make in pairs(memories) do
     end)
 end
 
-test("a table that something else changes is found out", function()
+test("a function whose table is changed elsewhere is detected", function()
     found_out(function()
         gain = { value = 1 }
         return function(t)
@@ -75,7 +75,7 @@ test("a table that something else changes is found out", function()
     gain = nil
 end)
 
-test("one of several terms is found out, also a delayed and a windowed one", function()
+test("an impure function among several terms is detected, also delayed or windowed", function()
     local function counted()
         local calls = 0
         return excitation.scripted(function() calls = calls + 1 return 1e-9 * calls end)
@@ -86,7 +86,7 @@ test("one of several terms is found out, also a delayed and a windowed one", fun
     found_out(function() return excitation.scripted(math.sin) + counted() end)
 end)
 
-test("what acts with a delay must be a function, too", function()
+test("delayed functions must be pure, too", function()
     local calls = 0
     local M = excitation.delayed(function(t, theta) calls = calls + 1 return -theta + 1e-9 * calls end, { by = 0.1 })
     for _, method in ipairs(methods) do
@@ -95,7 +95,7 @@ test("what acts with a delay must be a function, too", function()
     end
 end)
 
-test("rates of states, laws of friction, springs, belts, supports and events of a user must be functions, too", function()
+test("rates of states, laws of friction, springs, belts, supports and events of a user must be pure, too", function()
     local function drifting()
         local calls = 0
         return function() calls = calls + 1 return 0.3 + 1e-9 * calls end
@@ -115,7 +115,7 @@ test("rates of states, laws of friction, springs, belts, supports and events of 
     told({}, system { I = 1, k = 1, spring = drifting() }, "spring")
 end)
 
-test("a run that goes on is under oath again", function()
+test("a continued run is checked again", function()
     local late = false
     local M = function(t) return math.sin(t) + (late and 1e-6 * os.clock() or 0) end
     for _, method in ipairs(methods) do
@@ -131,7 +131,7 @@ test("a run that goes on is under oath again", function()
     end
 end)
 
-test("the rows until then are kept, and the story tells it", function()
+test("the rows until a contradiction are kept, and the story reports it", function()
     local switched = false
     local run = sys:simulate { theta0 = 1, t_end = 40, dt = 0.1, M = function(t)
         if t > 20 then switched = true end
@@ -143,7 +143,7 @@ test("the rows until then are kept, and the story tells it", function()
     has(run, "evaluated again")
 end)
 
-test("both values are told, to the last digit where that is what differs", function()
+test("both values are reported, to the last digit if they differ only there", function()
     local calls = 0
     local run = sys:simulate { t_end = 5, dt = 1, M = function() calls = calls + 1 return calls > 10 and 0.25 or 0.75 end }
     has(run.outcome, "it returned 0.75 and, evaluated again, 0.25;")
@@ -152,7 +152,7 @@ test("both values are told, to the last digit where that is what differs", funct
     has(run.outcome, "it returned 0.30000000000000004 and, evaluated again, 0.3;")
 end)
 
-test("steady states and responses say so, too", function()
+test("steady states and responses report impure functions, too", function()
     local function drifting()
         local calls = 0
         return function(t) calls = calls + 1 return math.sin(2 * math.pi * t) + 1e-13 * calls end
@@ -168,7 +168,7 @@ test("steady states and responses say so, too", function()
     end, "M depends on more than its arguments: at t = ")
 end)
 
-test("the listing of 1989 asks in order, and takes what it gets", function()
+test("dinal1989 evaluates M in order, and accepts any function", function()
     local last, sum = 0, 0
     local backwards = 0
     local run = nondimensional { zeta = 0.05 }:simulate { theta0 = 1, t_end = 5, dt = 0.1, integrator = integrator.dinal1989 { h = 0.01 },

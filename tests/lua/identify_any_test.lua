@@ -17,7 +17,7 @@ local run = sys:simulate { M = M, theta0 = 0.3, t_end = 40, dt = 0.05 }
 local guess = system { I = 1.2, k = 3, C = 0.05, Rd = 0.2, Re = 0.2 }
 local function uneven(a, b) return system { I = 1, k = 4, friction = friction.asymmetric { forward = { Rd = a }, backward = { Rd = b } } } end
 
-test("velocities alone tell the system, with gaps in them", function()
+test("velocities alone identify the system, with gaps in them", function()
     local v = {}
     for i, x in ipairs(run.velocity + noise(#run, 0.01, 1)) do v[i] = i % 7 == 0 and 0 / 0 or x end
     local fit = identify { data = { t = run.t, velocity = v }, M = M, system = guess, free = { "I", "k", "C", "Rd" }, measured = "velocity" }
@@ -28,7 +28,7 @@ test("velocities alone tell the system, with gaps in them", function()
     equal(#fit.residual, 801 - 801 // 7)
 end)
 
-test("angles and accelerations of unequal noise are weighed", function()
+test("angles and accelerations of unequal noise are weighted", function()
     local d = data { t = run.t, x = run.theta + noise(#run, 0.02, 2), a = run.acceleration + noise(#run, 0.05, 3) }
     local fit = identify { data = d, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd", "offset" }, measured = { theta = "x", acceleration = "a" } }
     found(fit, { k = 4, C = 0.1, Rd = 0.1 })
@@ -37,7 +37,7 @@ test("angles and accelerations of unequal noise are weighed", function()
     assert(fit.std_error.k < alone.std_error.k)
 end)
 
-test("a coast-down without a spring", function()
+test("a coast-down without a spring is identified", function()
     local fly = system { I = 1, k = 0, C = 0.1, Rd = 0.2 }
     local r = fly:simulate { velocity0 = 3, t_end = 12, dt = 0.05 }
     local fit = identify { data = { t = r.t, velocity = r.velocity + noise(#r, 0.01, 4) },
@@ -45,7 +45,7 @@ test("a coast-down without a spring", function()
     found(fit, { C = 0.1, Rd = 0.2, velocity0 = 3 })
 end)
 
-test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding", function()
+test("laws of friction on a belt are identified: stribeck, asymmetric, and lugre in its sliding", function()
     local function law(Rd, Re, speed) return system { I = 1, k = 4, C = 0.05, friction = friction.stribeck { Rd = Rd, Re = Re, speed = speed } } end
     local b = law(0.3, 0.6, 0.2):simulate { belt = 0.15, t_end = 30, dt = 0.05 }
     local belt_record = record(b, 5, 0.003)
@@ -71,7 +71,7 @@ test("laws of friction on a belt: stribeck, asymmetric, and lugre in its sliding
     has(fit.system, "lugre")
 end)
 
-test("numbers of a table that M uses, which stays as it was; a spring and a shaking base", function()
+test("numbers in a table that M uses are identified, and the table is restored; a spring and a shaking base are, too", function()
     local p = { Kp = 2, Kd = 0.5 }
     local function F(t, theta, velocity) return -p.Kp * (theta - 1) - p.Kd * velocity end
     local plant = system { I = 1, k = 1, Rd = 0.05 }
@@ -134,7 +134,7 @@ test("numbers of bodies and links are found from a guess that is wrong by 30 %, 
     assert(part > 0.8 and ratio < 1.4, part .. " " .. ratio)
 end)
 
-test("starts and offsets of bodies are given by name, a run of several bodies is a record, and what it leaves open is told", function()
+test("starts and offsets of bodies are given by name, a run of several bodies is a record, and undetermined values are reported", function()
     local at_rest = { load = 0, motor = 0 }
     local fit = identify { data = turning, system = drive_train(0.5, 6), M = turned, free = { "load.Rd", "load.Re", "load.offset" },
         measured = { "load.theta", "shaft.theta" }, theta0 = at_rest, velocity0 = at_rest, offset = { shaft = 0 } }
@@ -148,7 +148,7 @@ test("starts and offsets of bodies are given by name, a run of several bodies is
     has(fit, ">= 0.1, not determined by this record")
 end)
 
-test("Re goes with Rd where both are one number, of each way of an asymmetric law, too", function()
+test("Re follows Rd if both are one number, also in each direction of an asymmetric law", function()
     local r = uneven(0.05, 0.15):simulate { M = M, t_end = 30, dt = 0.05 }
     local fit = identify { data = r, M = M, system = uneven(0.1, 0.1), free = { "friction.forward.Rd", "friction.backward.Rd" } }
     near(fit["friction.forward.Rd"], 0.05, 1e-6)
@@ -156,7 +156,7 @@ test("Re goes with Rd where both are one number, of each way of an asymmetric la
     equal(Re, Rd)
 end)
 
-test("what cannot be fitted of several bodies is told", function()
+test("a fit of several bodies that is impossible is refused with a reason", function()
     local function refused(changes, ...)
         local asked = { data = measured_both(1), system = drive_train(0.4, 6), M = turned, free = { "load.Rd" }, measured = of_both }
         return { merged(asked, changes), ... }
@@ -176,7 +176,7 @@ test("what cannot be fitted of several bodies is told", function()
     raises(function() identify { data = measured_both(1), system = varying, free = { "load.k" } } end, "measured must be", "got nil")
 end)
 
-test("what cannot be fitted is told", function()
+test("a fit that is impossible is refused with a reason", function()
     local record = { t = run.t, theta = run.theta }
     refuses(identify, {
         { { data = record, measured = "velocity" }, "measured (the string \"velocity\") needs a guess: system = system{ ... }" },

@@ -6,7 +6,7 @@ local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t
 local sweeping = excitation.harmonic{ amplitude = 10, omega = 2.3, phase = 3.7 }
 local stops = { I = 0.5, k = 16, C = 0.5, Rd = 1.5, Re = 2.2 }
 
-test("a first velocity is found although the mass would stand at every small one", function()
+test("the initial velocity is found although a small one would leave the mass at rest", function()
     for _, velocity in ipairs{ -3, 0.5, 2.3, 5 } do
         local run = system(stops):simulate{ M = sweeping, theta0 = -0.4, velocity0 = velocity, t_end = 16, dt = 0.03 }
         for seed = 1, 3 do
@@ -19,7 +19,7 @@ test("a first velocity is found although the mass would stand at every small one
     end
 end)
 
-test("driven records of all kinds, whatever is given: no number is far beyond its error, and the fit is the nearest", function()
+test("driven records of all kinds are fitted, whatever is given: no value is many errors off, and the fit is the best one", function()
     math.randomseed(3)  -- of such records one in twenty was fitted badly, and one in a hundred had errors of next to nothing
     local names = { "I", "k", "C", "Rd", "Re", "offset" }
     local judged, part, ratio = judge()
@@ -57,7 +57,7 @@ test("driven records of all kinds, whatever is given: no number is far beyond it
     assert(part >= 0.90 and ratio <= 1.3, part .. " " .. ratio)
 end)
 
-test("a fit in a valley beside the right one is looked at again: viscous friction for dry, or another natural frequency", function()
+test("a fit in a wrong valley is tried again: viscous friction for dry, or another natural frequency", function()
     for _, seed in ipairs{ 28, 73, 100, 163, 191, 217, 218, 246, 293 } do -- which were fitted badly, most of them without a word
         math.randomseed(seed)
         local function between(a, b) return a + (b - a) * math.random() end
@@ -81,7 +81,7 @@ test("a fit in a valley beside the right one is looked at again: viscous frictio
     end
 end)
 
-test("a mass that M never moves tells nothing, and no error", function()
+test("a record of a mass that never moves identifies nothing, and has no errors", function()
     local sys = system{ I = 1, k = 40, C = 0.5, Rd = 4, Re = 6 }
     local M = excitation.harmonic{ amplitude = 5, omega = 4 }
     local run = sys:simulate{ M = M, t_end = 8, dt = 0.04 }
@@ -97,7 +97,7 @@ test("a mass that M never moves tells nothing, and no error", function()
     assert(alone >= 4, alone)
 end)
 
-test("a driven record that is cut off is fitted as one, too, and one that stands at its ends is not", function()
+test("a driven record that is cut off is fitted, too, and one that ends at rest is not called cut off", function()
     local two = excitation.harmonic{ amplitude = 10, frequency = 0.45 } + excitation.harmonic{ amplitude = 5, frequency = 1.3 }
     local run = system{ I = 1, k = 40, C = 0.6, Rd = 1.2, Re = 1.8 }:simulate{ M = two, theta0 = 0.2, velocity0 = 1, t_end = 20,
         dt = 0.02 }
@@ -113,7 +113,7 @@ test("a driven record that is cut off is fitted as one, too, and one that stands
     has_not(exact, "clipped")
 end)
 
-test("no search flies away: swings that no sample shows are none", function()
+test("a fit has no swings that no sample shows", function()
     local s = system{ I = 0.4, k = 4.74, C = 0.135, Rd = 0.242, Re = 0.261 }
     local run = s:simulate{ theta0 = 0.709, t_end = 15.4, dt = 0.02 }
     for seed = 1, 8 do  -- every third one ended overdamped, with I of 1e-6
@@ -142,7 +142,7 @@ test("units of time, angle and torque that are powers of two of others change no
     end
 end)
 
-test("an Re that is less than the Rd that is found is told", function()
+test("an Re below the identified Rd is reported", function()
     local told = "Re = 0.7 is given, but the fitted Rd is greater"
     local fit = identify{ data = decay, I = 1, Re = 0.7 }
     assert(tostring(fit):find(told, 1, true), fit)
@@ -151,7 +151,7 @@ test("an Re that is less than the Rd that is found is told", function()
     has_not(identify{ data = decay, I = 1 }, "is given, but")
 end)
 
-test("noise alone is no system, and noise in a measured M is told", function()
+test("a record of noise is refused, and noise in a measured M is reported", function()
     local t, M = vector.linspace(0, 10, 150), excitation.harmonic{ amplitude = 1, omega = 3 }
     for seed = 1, 15 do
         local noise = vector.normal{ n = #t, seed = seed, std = 0.03 }
@@ -165,7 +165,7 @@ test("noise alone is no system, and noise in a measured M is told", function()
     assert(told(0.05) and not told(0))
 end)
 
-test("the errors of I and k go together: that of omega0 is far smaller", function()
+test("the errors of I and k are correlated: that of omega0 is far smaller", function()
     local M = excitation.chirp{ amplitude = 1, from = 0.1, to = 0.6, duration = 40 }
     local run = system{ I = 1, k = 4, C = 0.1, Rd = 0.1 }:simulate{ M = M, t_end = 40, dt = 0.1 }
     local fit = identify{ data = record(run, 3, 1e-3), M = M }

@@ -40,7 +40,7 @@ end
 
 local every = { "omega0", "zeta", "Rd_over_k", "theta0", "velocity0", "offset" }
 
-test("a record as the model says is not accused, and its errors are those of its noise", function()
+test("a record that fits the model has no remarks, and its errors are those of its noise", function()
     local count, accused, n, one, two = counted(every), 0, lots(200)
     for seed = 1, n do
         local truth, run, noise = decay(seed)
@@ -52,7 +52,7 @@ test("a record as the model says is not accused, and its errors are those of its
     if n == 200 then assert(one > 0.64 and one < 0.75 and two > 0.92 and two < 0.98, one .. " " .. two) end
 end)
 
-test("friction that falls with the speed is told or widens the errors of what it moves", function()
+test("friction that falls with the speed is reported or widens the errors that it affects", function()
     local count, n, told, one, two = counted{ "zeta", "Rd_over_k" }, lots(200), 0
     for seed = 1, n do
         local truth, run, noise = decay(seed, "stribeck")
@@ -64,7 +64,7 @@ test("friction that falls with the speed is told or widens the errors of what it
     if n == 200 then assert(told > 45 and one > 0.4 and two > 0.6, told .. " " .. one .. " " .. two) end
 end)
 
-test("a zero that drifts is told or widens the errors, most of all that of the offset at the first time", function()
+test("a drifting zero is reported or widens the errors, most of all that of the offset at the first time", function()
     local count, offset, n, one, two, three, four = counted(every), counted{ "offset" }, lots(200)
     for seed = 1, n do
         local truth, run, noise, std = decay(seed)
@@ -76,7 +76,7 @@ test("a zero that drifts is told or widens the errors, most of all that of the o
     if n == 200 then assert(one > 0.66 and two > 0.91 and three > 0.5 and four > 0.82, one .. " " .. two .. " " .. three .. " " .. four) end
 end)
 
-test("steps of an instrument do not hide where the mass rests, which is where the zero is fitted to them", function()
+test("steps of an instrument do not hide where the mass rests, although the zero is fitted to them", function()
     local count, n, one, two = counted(every), lots(100)
     for seed = 1, n do
         local truth, run = decay(seed)
@@ -88,7 +88,7 @@ test("steps of an instrument do not hide where the mass rests, which is where th
     if n == 100 then assert(one > 0.66 and two > 0.92, one .. " " .. two) end
 end)
 
-test("a driven record of friction that falls with the speed is told or its errors are wider", function()
+test("friction that falls with the speed in a driven record is reported or widens the errors", function()
     local count, n, one, two = counted{ "I", "k", "C", "Rd" }, lots(30)
     for seed = 1, n do
         math.randomseed(seed)
@@ -105,7 +105,7 @@ test("a driven record of friction that falls with the speed is told or its error
     if n == 30 then assert(one > 0.55 and two > 0.84, one .. " " .. two) end
 end)
 
-test("a law of friction that another one made is told under a feedback, too", function()
+test("a wrong law of friction is reported under a feedback, too", function()
     local function M(t, theta) return 1.2 * math.sin(1.7 * t) + 0.5 * math.sin(4 * t) - 0.5 * theta end
     local law = friction.stribeck{ Rd = 0.2, Re = 0.4, speed = 0.3 }
     local run = system{ I = 0.96, k = 3.2, C = 0.27, friction = law }:simulate{ M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }

@@ -4,7 +4,7 @@ dofile "tests/lua/support.lua"
 local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
 local decay = sys:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
 
-test("an exact record gives the system back, with nothing said about where to look", function()
+test("an exact record identifies the system without a guess", function()
     for _, s in ipairs{ sys, system{ I = 1, k = 4, Rd = 0.3 }, system{ I = 1, k = 100, C = 1.5 }, system{ I = 1, k = 9, C = 0.1, Rd = 0.05 } } do
         local fit = identify{ data = s:simulate{ theta0 = -0.7, velocity0 = 1, t_end = 10, dt = 0.04 } }
         near(fit.omega0, s.omega0, 1e-7 * s.omega0)
@@ -17,7 +17,7 @@ test("an exact record gives the system back, with nothing said about where to lo
     end
 end)
 
-test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held by Re = Rd or by more", function()
+test("decays of all kinds are identified: 0.1 to 3 % of noise, from seconds to hours, Re = Rd or more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
     local records = lots(100)
@@ -37,7 +37,7 @@ test("decays of all kinds, with 0.1 to 3 % of noise, from seconds to hours, held
     assert(records < 100 or part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
 end)
 
-test("what is given has no error, and a misspelt field is told", function()
+test("given values have no error, and a misspelt field is an error", function()
     local fit = identify{ data = { time = decay.t, x = decay.theta }, velocity0 = 0 }
     equal(fit.velocity0, 0.0)
     equal(fit.std_error.velocity0, 0.0)
@@ -58,7 +58,7 @@ test("errors are those of the least squares of a sine: in whole periods its part
     near(fit.std_error.k, 2*omega*fit.std_error.omega0, 1e-3*fit.std_error.k)
 end)
 
-test("a record that is cut off is fitted as one, and said to be", function()
+test("a record that is cut off is fitted as such, and the fit says so", function()
     local run = system{ I = 1, k = 30, C = 0.1, Rd = 1.2 }:simulate{ theta0 = 1, t_end = 6, dt = 1/30 }
     local seen = noisy(run, 5, 0.01):map(function(x) return math.max(-0.4, math.min(0.4, x)) end)
     local fit = identify{ data = { t = run.t, theta = seen } }
@@ -71,7 +71,7 @@ test("a record that is cut off is fitted as one, and said to be", function()
     has_not(identify{ data = run }, "clipped")
 end)
 
-test("with I or k given a free decay tells the torques, too", function()
+test("with I or k given a free decay identifies the torques, too", function()
     local fit = identify{ data = decay, I = 1 }
     near(fit.k, 40, 1e-6)
     near(fit.Rd, 0.8, 1e-6)
@@ -80,7 +80,7 @@ test("with I or k given a free decay tells the torques, too", function()
     raises_here(function() return identify{ data = decay }.k end, "a free decay determines only ratios", "give I or k")
 end)
 
-test("a driven record with a known M tells the parameters that are asked for", function()
+test("a driven record with a known M identifies the free parameters", function()
     local M = function(t) return 0.3*math.sin(4*t) + 0.2*math.sin(9*t) end
     local s = system{ I = 0.02, k = 0.9, C = 0.01, Rd = 0.06 }
     local run = s:simulate{ M = M, t_end = 12, dt = 0.02 }
@@ -93,7 +93,7 @@ test("a driven record with a known M tells the parameters that are asked for", f
     has(fit:plot{ show = false }, "record")
 end)
 
-test("what cannot be a record is told in a sentence", function()
+test("a record that is impossible is refused with a reason", function()
     local t = vector.linspace(0, 1, 20)
     refuses(identify, {
         { {}, "identify needs data" },
@@ -123,7 +123,7 @@ local short_decays = {
     { "creeps", { I = 1, k = 40, C = 20, Rd = 2 }, dt = 1/30, std = 0.01, silent = "Rd_over_k Re theta0 offset" },
 }
 
-test("a decay of one or two swings: the errors are those of the flat valley, and what it leaves open is named", function()
+test("a decay of one or two swings has the errors of the flat valley, and names what it leaves undetermined", function()
     local judged, part, ratio = judge()
     for _, short in ipairs(short_decays) do
         local s = system(short[2])
@@ -143,7 +143,7 @@ end)
 
 local swings = excitation.harmonic{ amplitude = 0.3, frequency = 0.5 } + excitation.harmonic{ amplitude = 0.2, frequency = 1.3 }
 
-test("a driven record without a stop says nothing about Re, and bends nothing to make one", function()
+test("a driven record without a stop says nothing about Re, and no other value is distorted to produce a stop", function()
     local s = system{ I = 0.02, k = 0.8, C = 0.01, Rd = 0.05, Re = 0.08 }
     local run = s:simulate{ M = swings, theta0 = 0.2, velocity0 = -0.5, t_end = 10, dt = 0.02 }
     for _, event in ipairs(run.events) do assert(event.kind ~= "stick") end
@@ -166,7 +166,7 @@ test("a driven record without a stop says nothing about Re, and bends nothing to
     end
 end)
 
-test("where it stands the whole range of Re is looked at: no slope leads from Rd to it", function()
+test("the whole range of Re is searched for a record with stops, because no slope leads from Rd to it", function()
     local two = excitation.harmonic{ amplitude = 0.25, frequency = 0.3 } + excitation.harmonic{ amplitude = 0.12, frequency = 0.71 }
     local judged, part, ratio = judge()
     for _, case in ipairs{
@@ -189,7 +189,7 @@ test("where it stands the whole range of Re is looked at: no slope leads from Rd
     assert(part >= 0.85 and ratio <= 1.4, part .. " " .. ratio)  -- 69 numbers that hang together by records
 end)
 
-test("with everything given nothing is fitted: what is left is told", function()
+test("with everything given nothing is fitted, and the residual is reported", function()
     local known = { I = 1, k = 40, C = 0.3, Rd = 0.8, theta0 = 1, velocity0 = 0, offset = 0.1 }
     local noise = vector.normal{ n = #decay, seed = 2, std = 0.01 }
     known.data = { t = decay.t, theta = decay.theta + noise + 0.1 }
@@ -215,7 +215,7 @@ test("rows with a gap are left out of a plain table, too", function()
     raises_here(function() identify{ data = { t = decay.t, theta = x } } end, "data.theta[7] = inf must be finite")
 end)
 
-test("a record that the fit does not explain is told, and an honest one never", function()
+test("a record that the fit does not explain is reported, and one with white noise never", function()
     local t = vector.linspace(0, 8, 241)
     local function says(theta, given)
         local question = given or {}
@@ -242,7 +242,7 @@ test("a record that the fit does not explain is told, and an honest one never", 
     equal(says(honest.theta), "explained")
 end)
 
-test("records that were fitted badly once are explained as well as by the truth", function()
+test("records that were once fitted badly are explained as well as by the true parameters", function()
     local sine = excitation.harmonic
     local function two(A, w) return sine{ amplitude = A, omega = w } + sine{ amplitude = A / 2, omega = 2.3 * w, phase = 1 } end
     local w = 2 * math.pi
@@ -271,7 +271,7 @@ test("records that were fitted badly once are explained as well as by the truth"
     end
 end)
 
-test("a sample that is none is named", function()
+test("an invalid sample is named", function()
     local run = system{ I = 1, k = 40, C = 0.1, Rd = 0.4 }:simulate{ theta0 = 0.2, t_end = 10, dt = 1/60 }
     for _, wild in ipairs{ 5, 0.5 } do
         local theta = (run.theta + vector.normal{ n = #run, seed = 3, std = 0.002 }):table()
@@ -282,7 +282,7 @@ test("a sample that is none is named", function()
     end
 end)
 
-test("no error is below what a double can tell, a held offset and a missing spring are told", function()
+test("no error is below the rounding of doubles, and a held offset and a missing spring are reported", function()
     local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
     local fit = identify{ data = decay, I = 1 }
     for _, name in ipairs{ "k", "C", "Rd", "omega0", "zeta" } do assert(fit.std_error[name] >= 2^-52 * fit[name], name) end
@@ -294,7 +294,7 @@ test("no error is below what a double can tell, a held offset and a missing spri
     raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
 end)
 
-test("noise with a memory widens the errors, and is told; white noise does neither", function()
+test("correlated noise widens the errors, and is reported; white noise does neither", function()
     local M = excitation.harmonic { amplitude = 1, omega = 1.7 } + excitation.harmonic { amplitude = 0.5, omega = 4 }
     local run = system { I = 1, k = 4, C = 0.2, Rd = 0.2 }:simulate { M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
     local within, told = 0, 0
@@ -317,7 +317,7 @@ local rich = excitation.harmonic{ amplitude = 1.2, omega = 1.7 } + excitation.ha
 local plain = { I = 0.96, k = 3.2, C = 0.27, Rd = 0.2, Re = 0.25 }
 local function moved(changes) return system(merged(plain, changes)):simulate{ M = rich, theta0 = 0.4, t_end = 20, dt = 0.05 } end
 
-test("a wrong model is accused by what its residual follows: velocity, theta or time", function()
+test("the remark on a wrong model names what its residual follows: velocity, theta or time", function()
     local stribeck = system{ I = 0.96, k = 3.2, C = 0.27, friction = friction.stribeck{ Rd = 0.2, Re = 0.4, speed = 0.3 } }
         :simulate{ M = rich, theta0 = 0.4, t_end = 20, dt = 0.05 }
     local cubic = moved{ spring = spring.polynomial{ [3] = 0.5 } }
@@ -337,7 +337,7 @@ test("a wrong model is accused by what its residual follows: velocity, theta or 
     end
 end)
 
-test("a free decay, too, and with a guess and several bodies", function()
+test("a wrong model is also reported for a free decay, with a guess and for several bodies", function()
     local s = system{ I = 1, k = 4, C = 0.1, Rd = 0.1, spring = spring.polynomial{ [3] = 1 } }
     local run = s:simulate{ theta0 = 1, t_end = 20, dt = 0.05 }
     equal(identify{ data = record(run, 1, 0.003) }.misfit, "theta")
@@ -354,7 +354,7 @@ test("a free decay, too, and with a guess and several bodies", function()
     equal(identify{ data = d, M = M, system = two{ Rd = 0.4 }, free = { "load.Rd", "load.Re", "shaft.k" }, measured = "load.theta" }.misfit, "velocity")
 end)
 
-test("no white record is accused, and its errors cover the truth", function()
+test("records with white noise are never called wrong, and their errors cover the truth", function()
     local run = moved()
     local names, inside, twice, all = { "I", "k", "C", "Rd" }, 0, 0, 0
     for seed = 1, lots(30) do
@@ -389,7 +389,7 @@ test("a small misfit widens the errors by how far it moves the values", function
     assert(told > 6 and within / all > 0.85, told .. " " .. within .. " of " .. all)
 end)
 
-test("an instrument with steps errs alike as long as the mass rests: the errors know it", function()
+test("the errors account for an instrument with steps, which errs equally while the mass rests", function()
     local judged, part, ratio = judge()
     for seed = 1, lots(20) do
         math.randomseed(seed)
@@ -403,7 +403,7 @@ test("an instrument with steps errs alike as long as the mass rests: the errors 
     assert(part > 0.85 and ratio < 1.4, part .. " " .. ratio)  -- 30 to 40 % and up to 6 when samples at rest count as independent
 end)
 
-test("Re of a free decay is between what holds the mass at rest and what would have held it a turn before", function()
+test("Re of a free decay lies between what holds the mass at rest and what would have held it a turn earlier", function()
     local s = system{ I = 1, k = 40, C = 0.3, Rd = 0.8, Re = 1 }
     local run = s:simulate{ theta0 = 1, t_end = 12, dt = 0.02 }
     equal(run.outcome, "at rest")

@@ -10,7 +10,7 @@ local function kinds(run)
     return table.concat(list, " ")
 end
 
-test("a belt with kinks where it is zero is followed in no time", function()
+test("a belt with kinks where it is zero is followed quickly", function()
     local asked = 0
     local run = system { I = 1, k = 0, Rd = 0.1 }:simulate {
         belt = function(t)
@@ -23,13 +23,13 @@ test("a belt with kinks where it is zero is followed in no time", function()
     near(run.theta[#run], 2 * 7 - 0.05 * 49, found)
 end)
 
-test("without dry friction a belt is as none, and no turn is told initial angle", function()
+test("without dry friction a belt has no effect, and the start is not reported as a turn", function()
     local run = system { I = 1, k = 1 }:simulate { belt = 0.5, theta0 = -0.5, t_end = 4, dt = 1 }
     equal(kinds(run), "turn")
     near(run.events[1].t, math.pi, 1e-14)
 end)
 
-test("a belt that sets off along a wall takes a mass from it, by sliding or by sticking", function()
+test("a belt that begins to move along a wall takes a mass off it, by sliding or by sticking", function()
     local sys = system { I = 2, k = 0, Rd = 0.5, Re = 0.75, walls = { lower = 0, upper = 1, restitution = 0.5 } }
     for rate, theta in pairs { [1] = 0.125, [0.1] = 0.05 } do -- slower than the belt, or as it goes
         for _, belt in ipairs { function(t) return rate * t end, excitation.ramp { slope = rate } } do
@@ -40,7 +40,7 @@ test("a belt that sets off along a wall takes a mass from it, by sliding or by s
     end
 end)
 
-test("a belt that sets off from rest takes the mass along until spring, inertia and load need Re", function()
+test("a belt that begins to move from rest carries the mass until spring, inertia and load need Re", function()
     local I, k, Rd, Re, rate = 2, 3, 2.6, 4, 1.25 -- Rd alone, with a load of -0.25, would give less than I rate
     for _, case in ipairs {
         { 0, function(t) return rate * t end }, { 0, excitation.ramp { slope = rate } }, { 0.5, excitation.ramp { slope = rate, at = 0.5 } },
@@ -59,7 +59,7 @@ test("a belt that sets off from rest takes the mass along until spring, inertia 
     end
 end)
 
-test("what happens at the time of a row is in the row, and in the motion at that time", function()
+test("an event at the time of a row is included in the row, and in the motion at that time", function()
     for _, stop in ipairs { true, false } do
         local run = system { I = 1, k = 0 }:simulate {
             velocity0 = 1, t_end = 2, dt = 0.25,
@@ -73,7 +73,7 @@ test("what happens at the time of a row is in the row, and in the motion at that
     end
 end)
 
-test("what an impact takes past zero is told there, and so is its way back", function()
+test("an impact that moves a user's value past zero causes an event there, and so does its return", function()
     local run = system { I = 1, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate {
         velocity0 = 1, M = 0.5, t_end = 3, dt = 1, -- at the wall at 2 (sqrt 2 - 1), with sqrt 2
         events = { { when = function(_, _, v) return v - 0.1 end, name = "slow" } },
@@ -85,7 +85,7 @@ test("what an impact takes past zero is told there, and so is its way back", fun
     near(run.events[4].t, hit + 2 * (math.sqrt(0.5) + 0.1), 1e-13)
 end)
 
-test("a run may end where a function jumps, at t = 0, too", function()
+test("a run may end at a jump of a function, also at t = 0", function()
     local run = system { I = 1, k = 0 }:simulate {
         M = function(t) return t / 4 % 1 < 0.5 and 1 or -1 end, velocity0 = 2.5, t_start = -1, t_end = 0, dt = 0.5,
     }
@@ -117,7 +117,7 @@ local function moves_alike(sys, told, untold, methods)
     end
 end
 
-test("a belt that jumps, and does not say so, moves the mass as one that does, stuck or sliding", function()
+test("an unannounced jump of a belt moves the mass like an announced one, stuck or sliding", function()
     math.randomseed(5)
     for trial = 1, lots(24) do
         local Rd, k, C = 0.3, math.random() < 0.2 and 0 or 1, math.random() < 0.5 and 0 or 0.1
@@ -131,7 +131,7 @@ test("a belt that jumps, and does not say so, moves the mass as one that does, s
     end
 end)
 
-test("what acts and jumps, and does not say so, does what it does when it says so, whatever else is in the system", function()
+test("unannounced jumps have the effect of announced ones, in any system", function()
     math.randomseed(1)
     local function any(size)
         return unannounced(size, 0.3 + 2 * math.random(), math.random(), math.random() < 0.4)
@@ -163,7 +163,7 @@ test("what acts and jumps, and does not say so, does what it does when it says s
     end
 end)
 
-test("a belt may jump right behind the start", function()
+test("a belt may jump right after the start", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, v0 in ipairs { 0, 0.1, 0.5 } do
         for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do

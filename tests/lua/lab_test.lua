@@ -1,7 +1,7 @@
 -- lab and check: whose lab it is, what is refused, and that no answer is to be had but by working.
 dofile "tests/lua/support.lua"
 
-test("before a number is said, nothing is given and nothing judged", function()
+test("before a number is given, the lab gives and judges nothing", function()
   equal(lab.number(), nil)
   raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")
   raises_here(function() lab.given(1) end, "lab.given: first set your own student number")
@@ -9,7 +9,7 @@ test("before a number is said, nothing is given and nothing judged", function()
   raises_here(function() lab.marks() end, "lab.marks: first set your own student number")
 end)
 
-test("a sweep judges no answers: each of its workers would begin with all tries", function()
+test("a sweep judges no answers, as each of its workers would begin with all tries", function()
   for call, code in pairs {
     ["lab.number"] = "lab.number(4711)", ["check"] = "check('1a', p.n)", ["lab.given"] = "lab.given(1)",
     ["lab.experiment"] = "lab.experiment(1)", ["lab.marks"] = "lab.marks()",
@@ -19,7 +19,7 @@ test("a sweep judges no answers: each of its workers would begin with all tries"
   end
 end)
 
-test("a number that is none gets one sentence", function()
+test("an invalid number is refused with one sentence", function()
   for _, wrong in ipairs { 0, -3, 1.5, 1e9, math.huge, 0/0 } do
     raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
   end
@@ -32,7 +32,7 @@ test("a number that is none gets one sentence", function()
   equal(math.type(lab.number()), "integer")
 end)
 
-test("what is given depends on the number, and on nothing else", function()
+test("the given values depend only on the number", function()
   local first, again = lab.given(1), lab.given(1.0)
   assert(first ~= again)
   equal(first.viscous.k, again.viscous.k)
@@ -48,7 +48,7 @@ test("what is given depends on the number, and on nothing else", function()
   assert(lab.experiment(1).t == lab.experiment(1).t)
 end)
 
-test("an unknown question, sheet or value is refused in a sentence", function()
+test("an unknown question, sheet or value is refused with a reason", function()
   for _, case in ipairs {
     { check, "check: there is no question '1z'; sheet 1 asks 1a to 1h", "1z", 3 },
     { check, "check: there is no question 'a1'; did you mean '1a'?", "a1", 3 },
@@ -90,7 +90,7 @@ test("twelve wrong values are judged, and no more; a right one stays right", fun
   assert(said:find("\n0\tright\t1.0?\n1a\tright\t1.0?\n1a: right\nnumber 2: 2 of 2 right\n", 1), said)
 end)
 
-test("no script can look into the course, nor change what it says", function()
+test("no script can read the course, or change its answers", function()
   local spies = [[
     local seen, find = {}, string.find
     local function spy(name, f) return function(...) seen[#seen + 1] = name return f(...) end end
@@ -108,7 +108,7 @@ test("no script can look into the course, nor change what it says", function()
   end
 end)
 
-test("neither the program nor what students get shows the course", function()
+test("neither the program nor the students' files show the course", function()
   local pipe <close> = io.popen("cat src/lab/judge.lua sheets/[1-9]*.lua")
   local text = pipe:read "a"
   local program = read(program())
@@ -122,7 +122,7 @@ test("neither the program nor what students get shows the course", function()
   assert(looked_for > 100)
 end)
 
-test("a course that computes is stopped as everything else is", function()
+test("a course that runs too long is stopped like any other script", function()
   local said = output("lab.number(1) while true do lab.experiment(1) end", "--max-time 0.3")
   has(said, "stopped", "--max-time allows")
 end)

@@ -1,7 +1,7 @@
 -- Laws with a direction or a memory: freewheels, Jenkins elements, and laws side by side.
 dofile "tests/lua/support.lua"
 
-test("a freewheel lets its load run on, and takes it along", function()
+test("a freewheel lets its load overrun, and drives it", function()
     -- The load is driven by the motor and overruns it when the motor brakes.
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } },
         links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }
@@ -133,7 +133,7 @@ test("a list of jenkins elements obeys Masing's rule", function()
     closes(grounded)
 end)
 
-test("laws side by side add their torques", function()
+test("parallel laws add their torques", function()
     local M = excitation.harmonic { amplitude = 3, omega = 1.1 }
     local function run(friction_) return system { I = 1, k = 1, friction = friction_ }:simulate { M = M, t_end = 20 } end
     local sum = run { friction.coulomb { Rd = 0.2, Re = 0.3 }, friction.coulomb { Rd = 0.1 } }
@@ -153,7 +153,7 @@ test("laws side by side add their torques", function()
     raises(function() system { I = 1, k = 1, friction = friction.jenkins { stiffness = 9, Rd = 1 }, normal = math.sin } end, "must be a number")
 end)
 
-test("sliders on a geared link stand still while another law holds it", function()
+test("sliders on a geared link stay at rest while another law holds it", function()
     local rig = system { bodies = { a = { I = 0.55, k = 3.4, C = 0.05, Rd = 0.4 }, b = { I = 1.3, C = 0.1 } },
         links = { l = { "a", "b", ratio = -1.285391943567641, friction = { friction.jenkins { stiffness = 13, Rd = 0.36 }, friction.coulomb { Rd = 0.1 } } } } }
     local M = { a = excitation.harmonic { amplitude = 4, omega = 1.7 } }
@@ -163,7 +163,7 @@ test("sliders on a geared link stand still while another law holds it", function
     closes(run)
 end)
 
-test("a law without an Rd has none as a field, and elastic stops are the walls", function()
+test("a law without an Rd lacks this field, and elastic stops are the walls", function()
     local held = system { I = 1, k = 1, friction = friction.freewheel { Rd = 0.1 } }
     raises_here(function() return held.Rd end, "this system has no constant Rd: its friction is friction.freewheel{ Rd = 0.1 }")
     raises_here(function() return held.dead_zone end, "no constant dead_zone: its friction is friction.freewheel")
@@ -177,7 +177,7 @@ test("a law without an Rd has none as a field, and elastic stops are the walls",
     raises_here(function() return stopped.dead_zone end, "with elastic walls a mass has no dead zone")
 end)
 
-test("energy: sliders on a belt, and an impact that turns a slider round", function()
+test("the energy adds up with sliders on a belt, and with an impact that reverses a slider", function()
     local element = friction.jenkins { stiffness = 20, Rd = 1 }
     local total = closes(system { I = 1, k = 4, friction = element }:simulate { belt = 0.5, t_end = 9 }).total
     assert(total.dry > 0.1 and total.belt > 0.1)

@@ -53,7 +53,7 @@ test("friction on both sides of a rigid gear adds up", function()
     closes(run)
 end)
 
-test("a planetary gear shares torques as its formula says", function()
+test("a planetary gear shares torques according to its formula", function()
     local weights = { carrier = 2.5, sun = -1, ring = -1.5 }
     local I = { carrier = 3, sun = 0.5, ring = 1.2 }
     local torques = { carrier = -0.7, sun = 2, ring = 0.3 }
@@ -74,7 +74,7 @@ test("a planetary gear shares torques as its formula says", function()
     closes(run)
 end)
 
-test("a brake on the ring makes a planetary gear a gear, and lets it go", function()
+test("a brake on the ring turns a planetary gear into a simple gear, and releases it", function()
     local bodies = { carrier = { I = 3, C = 0.3 }, sun = { I = 0.5 }, ring = { I = 1.2, Rd = 5 } }
     local planet = { planet = { carrier = 2.5, sun = -1, ring = -1.5, rigid = true } }
     local run = system { bodies = bodies, links = planet }:simulate { M = { sun = M }, t_end = 10 }
@@ -91,7 +91,7 @@ test("a brake on the ring makes a planetary gear a gear, and lets it go", functi
     near(2.5 * slips.carrier.velocity, slips.sun.velocity + 1.5 * slips.ring.velocity, 1e-12)
 end)
 
-test("a chain of rigid gears is one body, and loops that agree change nothing", function()
+test("a chain of rigid gears is one body, and consistent loops change nothing", function()
     local bodies, links, I, ratio = {}, {}, 0, 1
     for i = 1, 12 do
         bodies["b" .. i] = { I = 1 + i / 10 }
@@ -113,7 +113,7 @@ test("a chain of rigid gears is one body, and loops that agree change nothing", 
     closes(loop)
 end)
 
-test("loops of rigid links that disagree lock", function()
+test("inconsistent loops of rigid links lock", function()
     local rig = system { bodies = { a = { I = 1 }, b = { I = 2 }, c = { I = 1 } },
         links = { ab = { "a", "b", ratio = 2, rigid = true }, bc = { "b", "c", rigid = true }, ac = { "a", "c", ratio = 3, rigid = true } } }
     local run = rig:simulate { M = { a = M, c = 1 }, t_end = 5 }
@@ -188,7 +188,7 @@ test("a machine is written as it was typed, changed and saved", function()
     has(rig:simulate { t_end = 1 }:explain(), "2.5 carrier - 1.5 ring - sun", "sun + 2 ring")
 end)
 
-test("what a gear can not be is said", function()
+test("an impossible gear is refused with a reason", function()
     local function links(of) return function() system { bodies = { a = { I = 1 }, b = { I = 1 }, c = { I = 1 } }, links = { l = of } } end end
     raises(links { "a", "b", ratio = 0 }, "ratio = 0 must not be zero")
     raises(links { "a", "b", c = 1 }, "name two bodies, or give each body its weight, not both")

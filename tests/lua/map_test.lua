@@ -5,7 +5,7 @@ local map = sweep { over = { x = vector.linspace(0, 1, 11), y = vector.linspace(
     return { steps = math.floor(p.x + p.y), slope = p.x + p.y }
 end }
 
-test("a map shows digits where z has a few whole numbers", function()
+test("a map shows digits if z has only a few whole numbers", function()
     local text = tostring(map:plot { z = "steps", show = false, width = 40, height = 12 })
     has(text, "steps:   0   1   2   3")
     local lines = {}
@@ -43,7 +43,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     has(three:filter(function(p) return p.a == 1 end):plot{ show = false }, "v:")
 end)
 
-test("contours lie over the shades and have names", function()
+test("contours are drawn over the shades and have names", function()
     local text = tostring(map:plot { z = "slope", contours = { 1, 2 }, show = false })
     has(text, "slope = 1", "slope = 2")
     local dotted = 0
@@ -53,7 +53,7 @@ test("contours lie over the shades and have names", function()
     assert(dotted > 20, text)
 end)
 
-test("on logarithmic axes a map leaves out what has no place there", function()
+test("on logarithmic axes a map omits values that are not positive", function()
     local with = sweep { over = { x = { -1, 0, 1, 10 }, y = { 0, 1, 2 } }, run = function(p) return { z = p.x + p.y } end }
     local without = with:filter(function(p) return p.x > 0 and p.y > 0 end)
     local function text(d) return tostring(d:plot { z = "z", xlog = true, ylog = true, show = false }) end
@@ -74,7 +74,7 @@ test("a map goes into files with a legend, and an SVG of a fine one stays small"
     has(svg, "z = 0", "<image")
 end)
 
-test("what is no grid is refused", function()
+test("data that are not a grid are refused", function()
     local d = data { x = { 1, 2, 2 }, y = { 1, 1, 1 }, z = { 1, 2, 3 } }
     raises_here(function() d:plot { x = "x", y = "y", z = "z" } end, "two rows with x = 2, y = 1")
     local v = vector.linspace(0, 1, 100)
@@ -88,7 +88,7 @@ test("what is no grid is refused", function()
     })
 end)
 
-test("one row, one column and nothing finite can be drawn", function()
+test("maps of one row, one column or without finite values can be drawn", function()
     local function text(d) return tostring(d:plot { x = "x", y = "y", z = "z", show = false }) end
     text(data { x = { 1, 2 }, y = { 1, 1 }, z = { 1, 2 } })
     text(data { x = { 0 }, y = { 1 }, z = { 5 } })
@@ -97,7 +97,7 @@ end)
 
 -- ---- bifurcation
 
-test("a linear oscillator settles to one point a period, of the size that theory says", function()
+test("a linear oscillator settles to one point a period, of the size that theory predicts", function()
     local zeta, f = 0.2, 1.3
     local b = bifurcation { over = { a = { 0.5, 1, 2 } }, period = 1 / f, skip = 60, keep = 5, at = function(p)
         return { system = nondimensional { zeta = zeta }, M = excitation.harmonic { amplitude = p.a, frequency = f } }
@@ -126,7 +126,7 @@ test("its plot shows points", function()
     has(read(file), "90 points")
 end)
 
-test("points of a bifurcation that fail have a row", function()
+test("points of a bifurcation that fail still have a row", function()
     local b = bifurcation { over = { a = { 1, 2, 3, 4 } }, period = 1, skip = 3, keep = 2, workers = 2, at = function(p)
         if p.a == 2 then error("not this one", 0) end
         if p.a == 3 then return { system = nondimensional {}, M = "x" } end
@@ -137,7 +137,7 @@ test("points of a bifurcation that fail have a row", function()
     has(b.error[4], "M must be a function, a number or an excitation")
 end)
 
-test("a bifurcation in a file is the same rows, and the same call reads them", function()
+test("a bifurcation in a file has the same rows, and the same call reads them", function()
     local file = temporary ".csv"
     local function diagram(keep)
         return bifurcation { over = { a = { 1, 2, 3 } }, period = 1, skip = 3, keep = keep, file = file, workers = 1, at = function(p)
@@ -156,7 +156,7 @@ test("a bifurcation in a file is the same rows, and the same call reads them", f
     raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, file = "b.txt", at = print } end, "must end in .csv")
 end)
 
-test("what is wrong with a bifurcation is told", function()
+test("mistakes in a bifurcation are errors with a reason", function()
     local function at() return { system = nondimensional {}, M = 1 } end
     local function returns(more) return { over = { a = { 1 } }, period = 1, at = function() return more end } end
     refuses(bifurcation, {
@@ -178,7 +178,7 @@ test("what is wrong with a bifurcation is told", function()
     })
 end)
 
-test("a bifurcation takes the period of each point in any of its forms", function()
+test("a bifurcation accepts the period of each point in any of its forms", function()
     for _, given in ipairs { { period = 0.5 }, { frequency = 2 }, { omega = 4 * math.pi } } do
         local b = bifurcation { over = { a = { 1 } }, skip = 0, keep = 1, at = function(p)
             return { system = nondimensional {}, theta0 = p.a, period = given.period, frequency = given.frequency, omega = given.omega }

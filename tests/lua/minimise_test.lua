@@ -1,7 +1,7 @@
 -- minimise{ over, run }: places that are known, and what is refused. Run by dinal.
 dofile "tests/lua/support.lua"
 
-test("the least value of one parameter is found, within and at the ends", function()
+test("the least value over one parameter is found, inside and at the ends", function()
     local best = minimise{ over = { x = { -1, 3 } }, run = function(p) return (p.x - 0.7) ^ 2 + 2 end }
     near(best.x, 0.7, 1e-7)
     near(best.value, 2, 1e-14)
@@ -13,7 +13,7 @@ test("the least value of one parameter is found, within and at the ends", functi
     near(minimise{ over = { x = { 0, 1 } }, run = function(p) return p.x < 0.4 and math.huge or p.x end }.x, 0.4, 1e-6)
 end)
 
-test("the least value of two parameters is found, in a valley that turns, too", function()
+test("the least value over two parameters is found, also in a curved valley", function()
     local best = minimise{ over = { x = { -2, 2 }, y = { -1, 3 } }, run = function(p) return (1 - p.x) ^ 2 + 100 * (p.y - p.x ^ 2) ^ 2 end }
     near(best.x, 1, 1e-5)
     near(best.y, 1, 1e-5)
@@ -22,7 +22,7 @@ test("the least value of two parameters is found, in a valley that turns, too", 
     near(best.b, 2, 1e-6)
 end)
 
-test("what is wrong with the call is told", function()
+test("mistakes in the call are errors with a reason", function()
     local function run() return 1 end
     refuses(minimise, {
         { { run = run }, "minimise needs over" },

@@ -1,7 +1,7 @@
 -- Eigenvalues beside a rest or an even sliding.
 dofile "tests/lua/support.lua"
 
-test("a mass on a spring has the pair that everybody knows", function()
+test("a mass on a spring has its well-known pair of modes", function()
     local sys = system { I = 2, k = 8, C = 0.4 }
     local modes = sys:modes()
     equal(#modes, 1)
@@ -51,7 +51,7 @@ test("friction that falls with the speed drives a mass on a belt", function()
     near(x[#run], wanted(t), 1e-8)
 end)
 
-test("nonlinear springs and feedback count at the rest, and states have modes", function()
+test("modes use nonlinear springs and feedback linearised at the rest, and include states", function()
     local sys = system { I = 1, k = 0, spring = spring.polynomial { [1] = 1, [3] = 1 } }
     near(sys:modes { M = 2, theta0 = 1 }[1].im, 2, 1e-9) -- rest at 1: 1 + 3
     local fed = system { I = 1, k = 4 }:modes { M = function(t, theta, velocity) return 0.6 * velocity end }
@@ -63,7 +63,7 @@ test("nonlinear springs and feedback count at the rest, and states have modes", 
     raises(function() system { I = 1, k = 1 }:modes { M = excitation.harmonic { omega = 1 } } end, "M must be constant")
 end)
 
-test("a clutch that holds is rigid, sliding loses its stability where the response has its Hopf point, states have modes", function()
+test("a clutch that holds is rigid, sliding becomes unstable at the Hopf point of the response, and states have modes", function()
     local rig = system { bodies = { a = { I = 1, k = 8 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 100 } } }
     local m = rig:modes()
     near(m[#m].im, 2, 1e-12)

@@ -11,7 +11,7 @@ local function pid(more)
     }, more)
 end
 
-test("states are columns: of the run, of its file, of run:at, and of plots", function()
+test("states are columns of the run, of its file, of run:at, and of plots", function()
     local run = block:simulate(pid())
     equal(#run.states.e, #run)
     equal(run.states.e[1], 0.0)
@@ -31,7 +31,7 @@ test("states are columns: of the run, of its file, of run:at, and of plots", fun
     assert(run:energy().total.closure < 1e-11)
 end)
 
-test("the header of a file repeats a run with more in it", function()
+test("the header of a file repeats a run with states, events and controllers", function()
     local gain = 0.2
     local runs = {
         block:simulate(pid { belt = 0.1, events = { { when = function(t, theta) return theta - 0.5 end, name = "half", direction = "up" } } }),
@@ -49,7 +49,7 @@ test("the header of a file repeats a run with more in it", function()
     end
 end)
 
-test("a run with states goes on with them, and with what its controllers remember", function()
+test("a run with states is continued with them, and with the memory of its controllers", function()
     local calls = 0
     local function task(t_end)
         return { M = excitation.sampled(function(t, theta) calls = calls + 1 return 1 - theta + 0.01 * calls end, { every = 0.1 }), t_end = t_end, dt = 0.1 }
@@ -63,7 +63,7 @@ test("a run with states goes on with them, and with what its controllers remembe
     near((block:simulate(pid()):continue { t_end = 12 }:at(12)), (block:simulate(pid { t_end = 12 }):at(12)), 1e-11)
 end)
 
-test("events have their names; they are told once, and stop or act", function()
+test("events have names, are reported once, and stop the run or act", function()
     local swing = system { I = 1, k = 1 }
     local bounces = 0
     local run = swing:simulate {
@@ -96,7 +96,7 @@ test("an act changes states through z", function()
     equal(run.n[#run], 7.0)
 end)
 
-test("what fails in a rate, an event or a sampled function is told with its name, and the rows are kept", function()
+test("errors in a rate, an event or a sampled function name it, and the rows are kept", function()
     local function fails(task, pattern)
         local ok, problem = pcall(block.simulate, block, task)
         assert(not ok and tostring(problem):find(pattern), problem)
@@ -115,7 +115,7 @@ test("what fails in a rate, an event or a sampled function is told with its name
         "events%[1%]%.act returned 1 and nil at t = 0%.5; it must return theta and velocity")
 end)
 
-test("what is wrong is one sentence with the name of the option", function()
+test("each mistake is one sentence with the name of the option", function()
     refuses(function(more) block:simulate(pid(more)) end, {
         { { states = 3 }, "states must be a table such as" },
         { { states = { e = 3 } }, "states.e must be a table such as" },
@@ -159,7 +159,7 @@ test("an error in the function of a belt or a base arrives unchanged, with the r
     end
 end)
 
-test("belts and states run far from t = 0 as they do near it", function()
+test("belts and states behave far from t = 0 as near it", function()
     local sys = nondimensional { zeta = 0.05, friction_ratio = 0.1 }
     local function of(t0, options)
         options.t_start, options.t_end, options.dt, options.theta0 = t0, t0 + 10, 0.5, 0.5
@@ -178,7 +178,7 @@ test("belts and states run far from t = 0 as they do near it", function()
     end
 end)
 
-test("a mass that stands is torn off by a base as quick as one likes when I a = Re", function()
+test("a mass at rest is released by a support, however fast, when I a = Re", function()
     local sys = system { I = 1, k = 1, Rd = 0.05, Re = 0.1 }
     for _, omega in ipairs { 3, 5, 10, 20, 50, 1000 } do
         local shake = 0.5 * excitation.harmonic { omega = omega }
@@ -214,7 +214,7 @@ local function same(run, plain, what)
     for i = 1, #plain do near(run.theta[i], plain.theta[i], 1e-9) end
 end
 
-test("what acts on nothing leaves the motion of rk4 as it is", function()
+test("states and events without effect leave the motion of rk4 unchanged", function()
     local far = merged({ walls = { lower = -50, upper = 50 } }, { I = 1, k = 40, C = 0.3, Rd = 4, Re = 5 })
     for name, M in pairs(loads) do
         local own = { M = M, theta0 = 0.7, t_end = 9.9, dt = 0.0371, integrator = steps }
@@ -234,7 +234,7 @@ test("what acts on nothing leaves the motion of rk4 as it is", function()
     end
 end)
 
-test("rk4 integrates states beside the motion, beside rest, and between its steps", function()
+test("rk4 integrates states with the motion, at rest, and between its steps", function()
     local beside = { z = { start = 0, rate = function(t) return math.cos(t) end } }
     for _, sys in ipairs { stick_slip, system { I = 1, k = 0, Rd = 20, Re = 20 } } do
         for _, M in pairs(loads) do
@@ -246,7 +246,7 @@ test("rk4 integrates states beside the motion, beside rest, and between its step
     end
 end)
 
-test("rk4 tells the first turn of a body that starts from rest, also under functions of the motion", function()
+test("rk4 reports the first turn of a body that starts from rest, also under functions of the motion", function()
     local free = system { I = 1, k = 40, C = 0.2 }
     local more = { states = { z = { start = 0, rate = function(_, theta) return theta end } } }
     local plain = free:simulate { theta0 = 0.2, t_end = 3, integrator = steps }

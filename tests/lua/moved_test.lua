@@ -1,7 +1,7 @@
 -- Bodies that are moved: their angle or velocity is given.
 dofile "tests/lua/support.lua"
 
-test("an end that is moved is a shaking support", function()
+test("a moved end of a spring is a shaking support", function()
     local A, w = 0.2, 1.7
     local rig = system { bodies = { cam = { theta = function(t) return A * math.sin(w * t) end }, load = { I = 2, C = 0.1 } },
         links = { spring = { "load", "cam", k = 5, C = 0.3 } } }
@@ -23,7 +23,7 @@ test("an end that is moved is a shaking support", function()
     near(half.load.theta[#half], run.load.theta[#run], 1e-11)
 end)
 
-test("a body that is moved at a velocity is a belt", function()
+test("a body moved at a given velocity is a belt", function()
     local rig = system { bodies = { disc = { velocity = 0.3 }, block = { I = 1, k = 2, C = 0.05 } }, links = { pad = { "block", "disc", Rd = 0.4, Re = 0.6 } } }
     local run = rig:simulate { t_end = 30 }
     local belt = system { I = 1, k = 2, C = 0.05, Rd = 0.4, Re = 0.6 }:simulate { t_end = 30, belt = 0.3 }
@@ -60,7 +60,7 @@ test("a moved body is written, changed and refused", function()
     raises(function() system { bodies = { cam = { theta = function(t, theta) return theta end } } } end, "function of t alone")
 end)
 
-test("a body moved by its angle is moved as by the velocity of it, for long and through a ratchet", function()
+test("a body moved by its angle moves as by the corresponding velocity, also for long and through a ratchet", function()
     local function ratchet(lever)
         return system { bodies = { lever = lever, wheel = { I = 2, C = 0.05, Rd = 0.3 } },
             links = { pawl = { "wheel", "lever", friction = friction.freewheel { Rd = 0.02 } } } }:simulate { t_end = 30 }
@@ -73,7 +73,7 @@ test("a body moved by its angle is moved as by the velocity of it, for long and 
     near(by_angle.events.t, by_velocity.events.t, 1e-8)
 end)
 
-test("a narrow pulse of a body that is moved is found, or the gap is told", function()
+test("a narrow pulse of a moved body is found, or the gap is reported", function()
     local A, width, at, C = 1, 1e-3, 7.123, 0.1
     local function rig(theta)
         return system { bodies = { cam = { theta = theta }, load = { I = 1, C = C } }, links = { shaft = { "cam", "load", k = 9 } } }
@@ -100,7 +100,7 @@ test("a narrow pulse of a body that is moved is found, or the gap is told", func
     near_truth(unread:simulate { t_end = at + later, integrator = integrator.spectral { narrowest = width } })
 end)
 
-test("a body that is moved is no system by itself", function()
+test("a moved body is not a system by itself", function()
     local rig = system { bodies = { cam = { theta = 0.1, k = 3 }, b = { I = 1 } }, links = { rod = { "b", "cam", k = 3 } } }
     raises_here(function() return rig.cam end, "sys.cam: cam is moved, and so no system by itself")
     equal(rig.b.I, 1.0)

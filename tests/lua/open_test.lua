@@ -13,7 +13,7 @@ local function happens(run, wanted)
     end
 end
 
-test("an open clutch has no events, and no story of slipping or sticking", function()
+test("an open clutch has no events, and its story mentions neither slipping nor sticking", function()
     local M = { a = function(t, _, v) return t - v.a end, b = function(t, _, v) return t - v.b end }
     for _, normal in ipairs { 0, function() return 0 end, function(t) return -t end } do
         local links = { clutch = { "a", "b", Rd = 1, normal = normal } }
@@ -28,7 +28,7 @@ test("an open clutch has no events, and no story of slipping or sticking", funct
     end
 end)
 
-test("a clutch that closes for a while takes the load along, and lets it go", function()
+test("a clutch that closes for a while carries the load, and releases it", function()
     for _, as in ipairs(both) do
         local normal = as(function(t) return t > 1 and t < 2 and 1 or 0 end)
         local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 1, normal = normal } } }
@@ -46,7 +46,7 @@ test("a clutch that closes for a while takes the load along, and lets it go", fu
     end
 end)
 
-test("a contact opens and closes where its load passes zero, and where it stands at zero for long", function()
+test("a contact opens and closes where its load passes zero, also if it stays at zero for long", function()
     for _, as in ipairs(both) do
         local loads = { as(math.sin), as(function(t) return math.max(0, math.sin(t)) end) }
         for _, options in ipairs { { Rd = 1, normal = loads[1] }, { Rd = 1, normal = loads[2] }, { Rd = loads[2] } } do
@@ -66,7 +66,7 @@ test("a contact opens and closes where its load passes zero, and where it stands
     end
 end)
 
-test("what stuck goes when its contact opens, without a slip, and is stuck no more", function()
+test("a stuck body whose contact opens moves without a slip, and is no longer stuck", function()
     local sys = system { I = 1, k = 1, Rd = 1, normal = function(t) return 1 - t end }
     local run = sys:simulate { t_end = 3 }
     happens(run, { { "open", 1 } })
@@ -77,7 +77,7 @@ test("what stuck goes when its contact opens, without a slip, and is stuck no mo
     says(run, "stuck there until t = 1, when its contact opened.", "it was stuck for 1 of 5 time units (20 %)")
 end)
 
-test("a contact that closes at a wall holds there against what pulls away", function()
+test("a contact that closes at a wall holds there against a pull off the wall", function()
     for _, as in ipairs(both) do
         local normal = as(function(t) return t > 1.5 and 1 or 0 end)
         local sys = system { I = 1, k = 0, Rd = 0.5, Re = 1, normal = normal, walls = { upper = 1, restitution = 0 } }
@@ -88,7 +88,7 @@ test("a contact that closes at a wall holds there against what pulls away", func
     end
 end)
 
-test("a contact whose load depends on the angle repeats itself, and is stuck for none of the time", function()
+test("a contact whose load depends on the angle has a period, and is never stuck", function()
     local sys = system { I = 1, k = 1, Rd = 0.2, normal = function(_, theta) return theta end }
     local run = sys:simulate { theta0 = 3, t_end = 7 }
     -- With the friction the spring has 0.8 of its stiffness on the way down, and 1.2 on the way up.

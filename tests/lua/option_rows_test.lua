@@ -108,9 +108,9 @@ end
 
 os.remove(record)
 
-test("there are many of them", function() assert(tested > 140, tested) end)
+test("many options were tested", function() assert(tested > 140, tested) end)
 
-test("names that are no options are told all at once, in an order that does not change from run to run", function()
+test("misspelt names are all reported at once, in an order that does not change from run to run", function()
     for _ = 1, 20 do
         local given = { zz = 1, Rf = 2, kk = 3, I = 1 }
         given.aa, given.zz = 4, nil -- another order in the table
@@ -120,7 +120,7 @@ test("names that are no options are told all at once, in an order that does not 
     end
 end)
 
-test("an option that belongs to the system, or to the run, is told where it belongs", function()
+test("an option that belongs to the system, or to the run, is refused with the right place", function()
     local sys = system { I = 1, k = 4 }
     local function told(call, sentence)
         local message = raises(call)

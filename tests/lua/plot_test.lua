@@ -10,7 +10,7 @@ local function vectors(options)
     return tostring(plot(merged({ show = false, width = 60, ascii = true }, options)))
 end
 
-test("a driven run shows theta and M/k, a free one only theta, both where they stick", function()
+test("the plot of a driven run shows theta and M/k, of a free one only theta, and when it sticks", function()
     has(picture(run), "a theta", "b M/k", " t")
     has(picture(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }),
         "b M/k", "stuck")
@@ -32,7 +32,7 @@ test("x and y choose columns by name or number, torques over k as in the record 
     })
 end)
 
-test("the phase plane has its start, its end and the dead zone", function()
+test("the phase plane shows start, end and dead zone", function()
     has(picture(free, { height = 20 }, "phase_plot"), "theta'/omega0, rad", "o start", "@ end", "= dead zone")
     has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }, {}, "phase_plot"), "dead zone")
 end)
@@ -50,7 +50,7 @@ local function with_rare_rows(options)
         { M = function(t) return 30*math.sin(2*math.pi*t) end, theta0 = 1, t_end = 1003, dt = 1.003 }, options))
 end
 
-test("pictures of a run show its motion, however rare the rows are", function()
+test("pictures of a run show its motion, even with few rows", function()
     local rare, close = with_rare_rows {}, with_rare_rows { dt = 0.01 }
     local function half_swings(run, what)
         return tonumber(description(function(file) run:plot { y = what, file = file } end):match "(%d+) half swings")
@@ -75,7 +75,7 @@ test("pictures of a run show its motion, however rare the rows are", function()
     equal(picture(of_pair(1.003).a, {}), picture(of_pair(0.01).a, {}))
 end)
 
-test("a picture of a run has the events as corners, and needs no rows", function()
+test("a picture of a run shows its events as corners, and needs no rows", function()
     local ball = system { I = 1, k = 1, walls = { lower = -1, upper = 0.5, restitution = 0.5 } }
     local function drawn(options) return description(function(file)
         ball:simulate(merged({ theta0 = -0.9, t_end = 3 }, options)):plot { y = "velocity", file = file }
@@ -85,7 +85,7 @@ test("a picture of a run has the events as corners, and needs no rows", function
     equal(drawn { times = {}, t_end = 3 }, drawn { dt = 1 })
 end)
 
-test("a picture of a run shows the M of the run, not what its function has become", function()
+test("a picture of a run shows the M of the run, not what its function does now", function()
     local force = 1
     local run = system { I = 1, k = 1, Rd = 0.1 }:simulate { t_end = 9, dt = 0.1,
         M = unread(function(t) return force*math.sin(t) end) }
@@ -96,7 +96,7 @@ test("a picture of a run shows the M of the run, not what its function has becom
     end
 end)
 
-test("the dead zone is drawn where the mass can rest, and not at all if that changes", function()
+test("the dead zone is drawn where the mass can rest, and not at all if it changes", function()
     local sys = system { I = 1, k = 2, Rd = 1, walls = { lower = -3, upper = 3.25 } }
     local function zone(options, other)
         options.t_end = 20
@@ -114,7 +114,7 @@ test("the dead zone is drawn where the mass can rest, and not at all if that cha
     equal(zone { theta0 = 1, belt = 0.1 }, nil)
 end)
 
-test("a run that began stuck, and one that never moved, show it", function()
+test("a run that began stuck, and one that never moved, are drawn as stuck", function()
     local sys = system { I = 1, k = 1, Rd = 1, Re = 2 }
     has(picture(sys:simulate { M = function(t) return t end, t_end = 4, dt = 0.1 }), "stuck  =")
     local still = picture(sys:simulate { theta0 = 0.5, t_end = 4, dt = 0.1 })
@@ -122,7 +122,7 @@ test("a run that began stuck, and one that never moved, show it", function()
     assert(bar and #bar > 45, still) -- all along the axis of about 50 columns
 end)
 
-test("a phase plane without k is that of the velocity, and has corners where a wall or a relay makes them", function()
+test("a phase plane without k shows the velocity, and has corners at a wall or a relay", function()
     local well = system { I = 1, k = 0, Rd = 0.01, spring = spring.polynomial { [1] = -1, [3] = 1 } }
     has(picture(well:simulate { theta0 = 1.2, t_end = 5, dt = 0.1 }, {}, "phase_plot"), "theta', rad/time")
     -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
@@ -154,7 +154,7 @@ test("a run from a file is drawn, too", function()
     has(picture(load(other)), "acceleration", "time")
 end)
 
-test("a run is a curve among curves: its theta over t", function()
+test("a run may be a curve among others: its theta over t", function()
     local other = nd:simulate { theta0 = 0.5, t_end = 4, dt = 0.05 }
     has(vectors { run, { other, label = "half" }, title = "two" }, "two", "theta, rad", "half")
     has(vectors { nondimensional {}:with { units = { theta = "m", t = "s" } }:simulate { theta0 = 1, t_end = 1, dt = 0.1 } }, "theta, m", "t, s")
@@ -163,12 +163,12 @@ test("a run is a curve among curves: its theta over t", function()
     raises_here(function() plot { (reloaded(run, { columns = { "theta", "velocity" } })) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
 end)
 
-test("a run without rows and motion says what to do", function()
+test("a run without rows and dense output says what to do", function()
     local none = nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false }
     raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
 end)
 
-test("what DRAAR asked for: window, divisions, axes or none", function()
+test("a plot has the options of DRAAR: window, divisions, axes or none", function()
     local drawn = picture(run, { xlim = { 1, 2 }, ylim = { -2, 2 }, xticks = 0.25, yticks = { -2, 0, 2 }, title = "window" })
     has(drawn, "window", "1.25", "1.75", "-2 +", " 2 +")
     has_not(drawn, "-1 +")
@@ -188,12 +188,12 @@ test("curves are vectors or tables of numbers; nan and inf are gaps", function()
     has(vectors { { { 0 / 0 }, { 1 } } }, "(no points)")
 end)
 
-test("styles: points, fills to zero or to another edge", function()
+test("curves may be points, or fills to zero or to another edge", function()
     has(vectors { { { 0, 1, 2 }, { 0, 1, 4 }, style = "points" } }, "x")
     vectors { { { 0, 1, 2 }, { 0, 1, 4 }, style = "fill", base = { 1, 1, 1 }, colour = 3, dashes = "dashed" } }
 end)
 
-test("logarithmic axes", function()
+test("axes may be logarithmic", function()
     has(vectors { { { 1, 10, 100 }, { 1e-9, 1e-6, 1e-3 } }, xlog = true, ylog = true }, "10", "1e-9")
     has(vectors { { { 1, 10, 100 }, { 0, -1, 5 } }, ylog = true }, "5") -- what is not positive has no place
     refuses(plot, {
@@ -203,7 +203,7 @@ test("logarithmic axes", function()
     })
 end)
 
-test("show = false returns a picture, that can be printed and set beside another one", function()
+test("show = false returns a picture, which can be printed and combined with another one", function()
     local left = plot { line, title = "left", show = false, width = 60 }
     local right = run:phase_plot { title = "right", show = false }
     has(left, "left")
@@ -225,7 +225,7 @@ test("a picture outlives its run", function()
     equal(tostring(picture), before)
 end)
 
-test("wrong curves are told by their number", function()
+test("errors in curves name the curve's number", function()
     refuses(plot, {
         { {}, "plot needs a curve" },
         { { run.t, run.theta }, "item 1 must be a curve { x, y }, a run or a picture, got a vector" },
@@ -245,7 +245,7 @@ test("wrong curves are told by their number", function()
     raises_here(function() plot(many) end, "1001 curves are too many, 1000 can be drawn")
 end)
 
-test("wrong options are told with their limits", function()
+test("errors in options name their limits", function()
     raises_here(function() run:plot("x.svg") end, "named options")
     raises_here(function() run.plot() end, "use a colon: run:plot()")
     refuses(function(o) run:plot(o) end, {
@@ -263,7 +263,7 @@ test("wrong options are told with their limits", function()
     })
 end)
 
-test("files begin as files of their kind begin, and an old one is replaced as a whole", function()
+test("files begin with the signature of their format, and an old one is replaced as a whole", function()
     local heads = { svg = "<?xml", png = "\x89PNG", pdf = "%PDF-" }
     for ending, head in pairs(heads) do
         local name = temporary("." .. ending)

@@ -11,7 +11,7 @@ local function believed(make, more)
     end
 end
 
-test("a counter, a log and a cache do not change a value", function()
+test("a counter, a log and a cache do not make a function impure", function()
     local calls, log, cache = 0, {}, {}
     believed(function()
         return function(t, theta)
@@ -25,7 +25,7 @@ test("a counter, a log and a cache do not change a value", function()
     assert(calls > 1000)
 end)
 
-test("coroutines within M, metatables, string arithmetic, integers and C functions are believed", function()
+test("coroutines within M, metatables, string arithmetic, integers and C functions count as pure", function()
     believed(function()
         return function(t)
             local inner = coroutine.wrap(function(x) coroutine.yield(math.sin(x)) end)
@@ -39,7 +39,7 @@ test("coroutines within M, metatables, string arithmetic, integers and C functio
     believed(function() return math.sqrt end)
 end)
 
-test("zeros of both signs, denormals, jumps and noise that is a function are believed", function()
+test("zeros of both signs, denormals, jumps and noise that is a function count as pure", function()
     local flip = 0
     believed(function()  -- -0 and 0 are one number
         return function()
@@ -63,7 +63,7 @@ local function summing(gain)
 end
 local another = "the function of excitation.sampled keeps a memory from one run to the next"
 
-test("a sampled controller that remembers a run is refused in another one", function()
+test("a sampled controller that remembers a run is refused in another run", function()
     local task = { M = summing(6), t_end = 5, dt = 1 }
     local run = spring:simulate(task)
     raises_here(function() spring:simulate(task) end, another)
@@ -73,7 +73,7 @@ test("a sampled controller that remembers a run is refused in another one", func
     raises_here(function() spring:simulate { M = 1 + 2 * task.M, t_end = 5, dt = 1 } end, another)
 end)
 
-test("so is a new one that shares its memory, unless that was reset; others may be used again", function()
+test("a new controller that shares this memory is refused, unless it was reset; others may be used again", function()
     local sum, gain = 0, 1
     local function task()
         return { M = excitation.sampled(function(_, theta) sum = sum + 0.05 * (0.5 - theta) return gain * sum end, { every = 0.05 }), t_end = 5, dt = 1 }
@@ -91,7 +91,7 @@ test("so is a new one that shares its memory, unless that was reset; others may 
     equal(spring:simulate(forgetful).theta[6], once)
 end)
 
-test("a sweep takes controllers that are made in it, and refuses one that its points share", function()
+test("a sweep accepts controllers made in its function, and refuses one that its points share", function()
     local shared = summing(1)
     local function swept(run) return sweep { over = { gain = { 1, 2, 3, 4 } }, workers = 2, run = run } end
     raises(function()
@@ -111,7 +111,7 @@ local function declared(gain)
 end
 local function last_of(run) return run.theta[#run.theta] end
 
-test("a memory that start makes begins anew with each run, and goes on with the run that is continued", function()
+test("a memory that start makes is new in each run, and continues in a continued run", function()
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.005 } } do
         local function task(t_end, M) return { M = M, t_end = t_end, dt = 1, integrator = method } end
         local M = declared(6)
@@ -127,7 +127,7 @@ test("a memory that start makes begins anew with each run, and goes on with the 
     end
 end)
 
-test("so it does in a rig", function()
+test("the same holds for several bodies", function()
     local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 } } }
     local M = excitation.sampled(function(_, theta, _, _, memory)
         memory.sum = memory.sum + 0.05 * (0.5 - theta.a)
@@ -139,7 +139,7 @@ test("so it does in a rig", function()
     for _ = 1, 2 do near(last_of(first:continue { t_end = 10 }.a), last_of(whole.a), 1e-9) end
 end)
 
-test("steady motions, sweeps and CSV headers take a declared memory along", function()
+test("steady motions, sweeps and CSV headers include a declared memory", function()
     local M = declared(1)
     local s = spring:steady { M = M + excitation.harmonic { frequency = 0.5 }, period = 2 }
     equal(s.amplitude, spring:steady { M = M + excitation.harmonic { frequency = 0.5 }, period = 2 }.amplitude)
@@ -150,7 +150,7 @@ test("steady motions, sweeps and CSV headers take a declared memory along", func
     has(M, "start = function() return { sum = 0, last = {} } end")
 end)
 
-test("start, the memory and what else is wrong are told", function()
+test("mistakes in start and the memory are errors with a reason", function()
     local function controller(start, f)
         return { M = excitation.sampled(f or function(_, _, _, _, memory) return memory.x end, { every = 0.1, start = start }), t_end = 1 }
     end

@@ -75,5 +75,5 @@ for page in output(table.concat(code, "\n")):gmatch "%z\n([^\0]*)" do
   i = i + 1
   test(("help %q"):format(questions[i][1]), function() has(page:match("^" .. ("[^\n]*\n?"):rep(6)), questions[i][2]) end)
 end
-test("there are many questions, and all are asked", function() assert(#questions >= 50 and i == #questions, i) end)
+test("there are many questions, and each one is tested", function() assert(#questions >= 50 and i == #questions, i) end)
 finish()

@@ -41,7 +41,7 @@ local none, list, deep = nil, { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f
 local function both(x) return x, -x end
 local function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end
 
-test("what a formula can be made of, beside what the random ones below have", function()
+test("operations of formulas that the random ones below do not use are read", function()
     local functions = {
         function(t) local s = 0 for i = 5, 1, -1 do if t > i then s = s + 1 else s = s - 0.5 end end return s end,
         function(t) for i = 3, 1 do t = t + i end return t end,
@@ -77,7 +77,7 @@ test("zeros keep their signs, and whole numbers wrap", function()
     same_values(function(t) return math.floor(t) // -1 + 10 // math.floor(t + 0.5) end, "whole //")
 end)
 
-test("what no formula is, is not read, and the line is told", function()
+test("a function that is not a formula is not read, and the line is named", function()
     local n, view = 0, setmetatable({}, { __index = function() return 2 end })
     not_read(function(t) n = n + 1 return t end, "assigns to a variable outside")
     not_read(function(t) UNUSED_GLOBAL = 1 return t end, "assigns to a global")
@@ -98,7 +98,7 @@ test("what no formula is, is not read, and the line is told", function()
     has(excitation.scripted(math.sin):obstacle(), "not a Lua function")
 end)
 
-test("what a formula holds for constant is looked at again when anything may have changed it", function()
+test("constants of a formula are read again when they may have changed", function()
     local a, p, many = 1, { b = 2 }, vector.range(1, 50)
     local e = excitation.scripted(function(t) return a * t + p.b end)
     local function last() return e:values(many)[50] end
@@ -129,7 +129,7 @@ test("what a formula holds for constant is looked at again when anything may hav
     has(e:obstacle(), "metatable")
 end)
 
-test("sums of native terms, and pieces that are such sums, run by exact, and what repeats knows its period", function()
+test("sums of native terms, and pieces of them, are run by exact, and have known periods", function()
     local sys = system { I = 1, k = 5, Rd = 0.3, Re = 0.35 }
     local a, w = 2, 3
     local cases = { -- with their periods
@@ -175,7 +175,7 @@ test("sums of native terms, and pieces that are such sums, run by exact, and wha
         "integrator.exact{} supports only native terms")
 end)
 
-test("a variable that an event changes in the middle of a run is seen at once", function()
+test("a variable that an event changes during a run is read at once", function()
     local function final(extra)
         local gain = 1
         local run = system { I = 1, k = 0 }:simulate {
@@ -190,7 +190,7 @@ test("a variable that an event changes in the middle of a run is seen at once", 
     equal(read[2], asked[2])
 end)
 
-test("theta, velocity and states come in, and a run is the same to the last bit", function()
+test("a formula may use theta, velocity and states, and a run is the same to the last bit", function()
     local function rows(M, integrator)
         return system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate {
             M = M, theta0 = 1, t_end = 20, dt = 0.1, integrator = integrator,
@@ -207,7 +207,7 @@ test("theta, velocity and states come in, and a run is the same to the last bit"
 end)
 
 -- A law that is read goes on below speed 0 as its formula does, one that is called with a bend: stretches differ.
-test("functions of several bodies, of the speed, and rates of states are read, with their conditions: a run is the same to rounding", function()
+test("functions of several bodies, of the speed, and rates of states are read with their conditions: runs agree to rounding", function()
     local M = function(t, theta, velocity, z)
         return (theta.b > 0.2 and math.sin(2 * t) or -0.3 * theta.b) + 0.1 * velocity.a - 0.2 * z.e
     end
@@ -260,7 +260,7 @@ local natives = {
     2 * excitation.harmonic { omega = 3 }:window(1, 2) + excitation.step { at = 5 } - 0.3,
 }
 
-test("an excitation inside a function is read as itself: its bits, its breaks, its motion", function()
+test("an excitation inside a function is read with its bits, its breaks and its motion", function()
     local sys, own = system { I = 1, k = 4, C = 0.2, Rd = 0.1 }, { gain = 0.5 }
     for i, e in ipairs(natives) do
         own.e = e
@@ -288,7 +288,7 @@ test("an excitation inside a function is read as itself: its bits, its breaks, i
     end
 end)
 
-test("samples less a number inside a function run as the samples do, however many", function()
+test("samples minus a number inside a function run like the samples, however many", function()
     local t, M = {}, {}
     for i = 0, 20000 do t[i + 1], M[i + 1] = i * 1e-3, math.sin(i * 1e-3) + 0.1 * math.sin(i) end
     local lin, p, sys = excitation.samples { t = t, M = M }, { of = 0.1 }, system { I = 1, k = 4, C = 0.2, Rd = 0.1 }
@@ -315,7 +315,7 @@ test("an excitation at a time that depends on the motion, with more arguments or
         "it evaluates an excitation at a time that depends on the motion")
 end)
 
-test("proof tells what is known between the samples, and why not", function()
+test("proof states what is known between the samples, or why nothing is", function()
     local function proof(M) return (M + excitation.step {}):proof() end
     equal(excitation.step {}:proof(), "native terms")
     equal(proof(math.pi * excitation.scripted(function(t) return math.sin(t) * t end)), "read: bounded on every stretch")
@@ -348,7 +348,7 @@ end)
 
 -- ---- conditions are breaks
 
-test("breaks are the very times at which Lua sees the change", function()
+test("breaks are the very times at which Lua's result changes", function()
     local third = 0.3
     local cases = {
         { function(t) return t < 1 and 2 or 3 end, 1 },
@@ -400,7 +400,7 @@ test("no pulse is missed, however narrow", function()
     end
 end)
 
-test("conditions of theta are no breaks, those of t beside them are", function()
+test("conditions of theta are not breaks, those of t in the same function are", function()
     local e = excitation.scripted(function(t, theta, velocity)
         if theta > 0 then return t < 1 and 1 or 2 end
         if velocity > 0 then return t < 3 and 1 or 2 end
@@ -412,7 +412,7 @@ test("conditions of theta are no breaks, those of t beside them are", function()
     equal(e:next_break(3), math.huge)
 end)
 
-test("a delayed function has its breaks later", function()
+test("the breaks of a delayed function are delayed", function()
     local e = excitation.scripted(function(t) return t % 2 < 1 and 1 or 0 end):delay(0.25)
     equal(e:next_break(0), 0.25)
     equal(e:next_break(0.25), 1.25)
@@ -446,7 +446,7 @@ local function body()
     return table.concat(lines, "\n") .. "\nreturn x + " .. text("E", 5)
 end
 
-test("random functions give the same bits read as asked", function()
+test("random functions give the same bits read as called", function()
     math.randomseed(tonumber(os.getenv("DINAL_READING_SEED")) or 1)
     local cases, read, values = tonumber(os.getenv("DINAL_READING_CASES")) or 1500, 0, 0
     for case = 1, cases do
@@ -465,7 +465,7 @@ test("random functions give the same bits read as asked", function()
     assert(read > 0.8 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
 end)
 
-test("a long text is compared by its content", function()
+test("long strings are compared by content", function()
     local wanted = "emergency stop with a locked brake, full load"
     for _, case in ipairs { wanted, table.concat({ "emergency stop with a locked", "brake, full load" }, " "), "emergency stop" } do
         local function M(t) if t > 1 and case == wanted then return 1 end return t end
@@ -477,7 +477,7 @@ test("a long text is compared by its content", function()
     end
 end)
 
-test("a folded time that is used twice has its breaks in every period", function()
+test("a folded time (t % T) used twice has its breaks in every period", function()
     local functions = {
         function(t) local x = t % 0.5 return x - x * x end,
         function(t) local x = t % 0.5 return x * x - x end,
@@ -489,7 +489,7 @@ test("a folded time that is used twice has its breaks in every period", function
     for i, f in ipairs(functions) do equal(excitation.scripted(f):next_break(0.1), 0.5, i) end
 end)
 
-test("a train of parabolas moves a mass as its formula does", function()
+test("a train of parabolas moves a mass as its closed form does", function()
     local sys = system { I = 1, k = 4, C = 0.2, Rd = 0.05 }
     local trains = {
         function(t) local x = t % 0.5 return x - x * x end,
@@ -532,7 +532,7 @@ test("native terms of a short piece far from t = 0 have the digits of their form
     end
 end)
 
-test("a formula whose native terms would lose its digits is followed itself", function()
+test("a formula whose native terms would lose digits is integrated as a function", function()
     local sys = system { I = 1, k = 4, C = 0.2 }
     local function f(t) return (t - 1000) ^ 2 * 1e-6 - (t - 1000) ^ 3 * 1e-9 + 1e9 * (1e-9 * math.sin(t) + 1) - 1e9 end
     local run = sys:simulate { M = f, t_end = 20, dt = 0.5 }

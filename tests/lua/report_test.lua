@@ -11,7 +11,7 @@ end
 local sys = system{ I = 1, k = 40, Rd = 1, Re = 1.5 }
 local run = sys:simulate{ theta0 = 1, t_end = 6, dt = 0.01 }
 
-test("all kinds of things, in their order, on one page", function()
+test("a report has all kinds of items, in their order, on one page", function()
     local r = report{ title = "Decay <1>", author = "A & B" }
     r:heading "Results"
     r:text "First & foremost.\n\nSecond paragraph."
@@ -41,7 +41,7 @@ test("all kinds of things, in their order, on one page", function()
     has_not(page, "<1>")
 end)
 
-test("Markdown has its pictures beside it, and text stays text", function()
+test("a Markdown report has its pictures in files beside it, and text stays text", function()
     local r = report{ title = "A_b*c" }
     r:text "see [x](y) and `z`, R&D <b>"
     r:add("fence", "```")
@@ -56,7 +56,7 @@ test("Markdown has its pictures beside it, and text stays text", function()
     os.remove(picture)
 end)
 
-test("names of columns are no markup, bytes that are no letters no letters, and a table is shown with what is in it", function()
+test("names of columns are not markup, invalid bytes are not letters, and a table is shown with its content", function()
     local r = report{ title = "x" }
     r:table(data{ { "<b>a</b>", { 1 } }, { "`c` [d](e)", { 2 } } })
     r:text "\xff and \xc3\xa4"
@@ -79,7 +79,7 @@ test("names of columns are no markup, bytes that are no letters no letters, and 
     raises_here(function() r:add{ io.stdout } end, "r:add: this table contains values that cannot be shown")
 end)
 
-test("nothing wide pushes the page apart, and what is long may go on over the next sheet", function()
+test("wide items do not widen the page, and long ones may continue on the next sheet", function()
     local r = report{ title = "x" }
     r:table(data{ n = vector.linspace(1, 40, 40) })
     r:add(("line\n"):rep(40))
@@ -91,7 +91,7 @@ test("nothing wide pushes the page apart, and what is long may go on over the ne
     has(page, "padding: .15em .5em; overflow-wrap: anywhere") -- on paper no column is beyond the edge
 end)
 
-test("a run in motion is on the page, and beside Markdown", function()
+test("an animation is on the page, and beside Markdown", function()
     local r = report{ title = "x" }
     r:animate(run, { speed = 2, from = 1, to = 3 })
     r:animate(run)
@@ -111,7 +111,7 @@ test("a run in motion is on the page, and beside Markdown", function()
     raises_here(function() r:animate(run, { file = "x.svg" }) end, "file")
 end)
 
-test("a run of several bodies in motion is on the page with all of them", function()
+test("an animation of several bodies is on the page with all of them", function()
     local rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     local r = report{ title = "x" }
     r:animate(rig:simulate{ velocity0 = { motor = 3 }, t_end = 1 })
@@ -129,7 +129,7 @@ test("the end of CDATA in a label leaves the picture well formed", function()
     os.remove(picture)
 end)
 
-test("what cannot be reported is told in a sentence", function()
+test("an item that cannot be reported is refused with a reason", function()
     refuses(report, {
         { {}, "report needs title" },
         { { title = 3 }, "title must be" },

@@ -1,7 +1,7 @@
 -- sys:response, run:spectrum and run:poincare against closed forms. Run by dinal.
 dofile "tests/lua/support.lua"
 
-test("the response is Den Hartog's where it does not stop, and goes on where it does", function()
+test("the response is Den Hartog's without stops, and continues with stops", function()
     local c = nondimensional{ friction_ratio = 0.5 }:response{ over = { frequency = vector.linspace(0.3, 2.1, 46) }, between = true }
     equal(#c, 47) -- and the resonance
     equal(c.frequency[1], 0.3)
@@ -25,7 +25,7 @@ end)
 
 local function linear(I, k, C, w) return 1 / math.sqrt((k - I*w^2)^2 + (C*w)^2) end
 
-test("what is varied may be the frequency, omega, period or amplitude of a sine, or anything that at makes of a point", function()
+test("the parameter may be the frequency, omega, period or amplitude of a sine, or anything that at computes from it", function()
     local sys = system{ I = 2, k = 50, C = 1.5 }
     local frequency, w = vector{ 0.5, 0.8, 1.1 }, 2*math.pi*0.8
     local c = sys:response{ amplitude = 3, over = { frequency = frequency } }
@@ -52,7 +52,7 @@ test("what is varied may be the frequency, omega, period or amplitude of a sine,
     for _, row in ipairs(c) do near(row.amplitude, linear(2, 50, row.C, w), 1e-12) end
 end)
 
-test("what is wrong with a response is told", function()
+test("mistakes in a response are errors with a reason", function()
     local sys = system{ I = 2, k = 50, C = 1.5 }
     local one = { amplitude = { 1, 2 } }
     local function empty() return {} end
@@ -76,7 +76,7 @@ test("what is wrong with a response is told", function()
     })
 end)
 
-test("folds, jumps and unstable sides are rows, and a picture of pieces", function()
+test("folds, jumps and unstable branches are rows, and a picture in pieces", function()
     local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }
     local c = sys:response{ amplitude = 0.5, over = { frequency = { 0.2, 0.3, 0.42 } } }
     equal(#c, 5)   -- 0.3 lies between the jumps: three motions
@@ -93,7 +93,7 @@ test("folds, jumps and unstable sides are rows, and a picture of pieces", functi
     raises_here(function() data{ r = { 1 }, A = { 2 } }:plot{ overlay = "x" } end, "nor any other")
 end)
 
-test("the curves of theory beside a response are Den Hartog's and that of equivalent damping", function()
+test("the theory curves beside a response are Den Hartog's and that of equivalent damping", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3 }
     local c = sys:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 20) }, between = true }
     local exact, about = c.den_hartog, c.linearised
@@ -110,7 +110,7 @@ test("the curves of theory beside a response are Den Hartog's and that of equiva
     has(picture, "a amplitude", "linearised")
 end)
 
-test("a response is drawn up to its folds, and its rows stay those of the values", function()
+test("a response is drawn up to its folds, and its rows stay those of the given values", function()
     local duffing = system{ I = 1, k = 1, C = 0.05, Rd = 0.05, spring = spring.polynomial{ [3] = 1 } }
     local values = vector.linspace(0.5, 2.5, 40)
     local c = duffing:response{ over = { r = values },
@@ -170,7 +170,7 @@ test("the spectrum of a motion does not depend on the rows", function()
     assert(#uneven > 500)
 end)
 
-test("a motion looked at once a period", function()
+test("poincare samples a run once a period", function()
     local run = nondimensional{ zeta = 0.3 }:simulate{ M = excitation.harmonic{ frequency = 0.8 }, t_end = 50, dt = 10 }
     local d = run:poincare{ period = 1.25, from = 25 }
     equal(#d, 21)
@@ -189,12 +189,12 @@ test("a motion looked at once a period", function()
     raises_here(function() run:poincare{ period = 1e-9 } end, "samples are more than")
 end)
 
-test("a branch that ends at resonance jumps nowhere", function()
+test("a branch that ends at resonance has no jump", function()
     local c = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.4, Re = 0.6 }:response{ over = { frequency = vector.linspace(0.05, 3, 100) }, between = true }
     for i = 1, #c.jumps do assert(c.jumps.from[i] < 1e6, c.jumps) end
 end)
 
-test("a mass that a softening spring lets go is told to grow, and the response has its rows on both sides", function()
+test("a mass that a softening spring releases is reported as growing, and the response has its rows on both sides", function()
     local sys = system{ I = 1 / (4 * math.pi^2), k = 1, C = 0.1 / math.pi, Rd = 0.2, spring = spring.polynomial{ [3] = -0.1 } }
     local c = sys:response{ over = { frequency = vector.linspace(0.3, 2.2, 30) }, between = true }
     near(c.frequency:max(), 2.2, 1e-12)
@@ -202,13 +202,13 @@ test("a mass that a softening spring lets go is told to grow, and the response h
     equal(sys:steady{ M = function(t) return math.sin(math.pi * t) end, period = 2 }.status, "grows")
 end)
 
-test("a mass that adheres makes no stops: nan, and not 0", function()
+test("a mass that adheres has nan stops, not 0", function()
     local c = nondimensional{ friction_ratio = 0.5 }:response{ over = { amplitude = { 0.2, 0.3, 2 } }, frequency = 0.5 }
     assert(c.status[1] == "adheres" and c.stops[1] ~= c.stops[1] and c.stuck[1] == 1)
     assert(c.status[3] == "steady" and c.stops[3] == 0)
 end)
 
-test("a resonance without enough friction is no finite peak, whatever the points are", function()
+test("a resonance without enough friction has no finite peak, whatever the points are", function()
     for _, range in ipairs{ { 0.5, 1.5 }, { 1.5, 0.5 } } do
         local c = nondimensional{ friction_ratio = 0.3 }:response{ over = { frequency = vector.linspace(range[1], range[2], 40) }, between = true }
         equal(#c, 41)
@@ -332,7 +332,7 @@ test("period doublings are located, and the branches of twice the period followe
     equal(stable(2), 3.0)
 end)
 
-test("Welch's density has the variance of noise, flat, and the power of a sine", function()
+test("Welch's density has the variance of flat noise, and the power of a sine", function()
     local n = 2^14
     local noise, t = vector.normal{ n = n, seed = 3, std = 0.5 }, vector.range(0, n - 1) * 0.01
     local run = system{ I = 1, k = 0 }:simulate{ M = excitation.samples{ t = t, M = noise }, times = t }
@@ -352,7 +352,7 @@ test("Welch's density has the variance of noise, flat, and the power of a sine",
     raises_here(function() sine:spectrum{ of = "M", method = "welch", segments = 3000 } end, "4000 rows are too few for 3000 segments, which need 8 each")
 end)
 
-test("a period is given as period, frequency or omega wherever one is asked", function()
+test("a period may be given as period, frequency or omega in every call", function()
     local sys = nondimensional{ friction_ratio = 0.4 }
     local function M(t) return math.sin(0.8 * math.pi * t) end
     local s = sys:steady{ M = M, period = 2.5 }

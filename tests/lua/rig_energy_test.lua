@@ -1,6 +1,6 @@
 dofile "tests/lua/support.lua"
 
-test("a torque gives what it times the way of its body is, and a clutch turns what it slips into heat", function()
+test("the work of a torque is its integral over the body's way, and a slipping clutch dissipates", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     local run = rig:simulate { velocity0 = { motor = 3 }, M = { motor = 1 }, t_end = 4 }
     local e = closes(run, "driven clutch")
@@ -10,7 +10,7 @@ test("a torque gives what it times the way of its body is, and a clutch turns wh
     raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
 end)
 
-test("energy closes with everything that a rig may have", function()
+test("the energy adds up with everything that several bodies may have", function()
     local rig = system {
         bodies = {
             a = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 },
@@ -34,7 +34,7 @@ test("energy closes with everything that a rig may have", function()
     says(run, "3 bodies and 3 links", "a rubs on a belt", "gap links a and c. It has no dry friction", "hit the walls", "Energy came from", "the friction of pad")
 end)
 
-test("energy of one body whose friction varies, with bristles, and of a locked pair on a belt", function()
+test("the energy adds up for one body with varying friction and bristles, and for a locked pair on a belt", function()
     local one = system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate { theta0 = 1.03, t_end = 20 }:energy()
     local run = system { I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }:simulate { theta0 = 1.03, t_end = 20 }
     near(run:energy().total.dry, one.total.dry, 1e-12)
@@ -50,7 +50,7 @@ test("energy of one body whose friction varies, with bristles, and of a locked p
     near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
 end)
 
-test("energy over time: of all, and of one body or link as of a system of one body", function()
+test("energy over time is given for all bodies, and for one body or link as for a system of one body", function()
     local rig = pair({ I = 1, k = 4, C = 0.1, Rd = 0.3 }, { I = 0.5, k = 1, walls = { upper = 0.4, restitution = 0.5 } }, { k = 2, C = 0.1, Rd = 0.05 })
     local run = rig:simulate { M = { a = function(t) return math.sin(1.3 * t) end }, belt = { a = 0.1 }, velocity0 = { b = 1 }, t_end = 20,
         events = { { when = function(t) return t - 11.3 end, act = function(t, theta, velocity) velocity.b = velocity.b + 0.5 end } } }
@@ -80,7 +80,7 @@ test("energy over time: of all, and of one body or link as of a system of one bo
     has(a, "work of its links on it")
 end)
 
-test("the energy of several bodies is that of the run itself: it asks no function, and knows what went before", function()
+test("the energy of several bodies needs no function call, and includes the first part of a continued run", function()
     local calls = 0
     local function M(t) calls = calls + 1 return math.sin(1.3 * t) + 0 * #tostring(t) end
     local rig = pair({ I = 1, k = 2, Rd = 0.2 }, { I = 2, k = 1, walls = { upper = 0.4, restitution = 0.6 } }, { k = 3, C = 0.1, Rd = 0.1 })
@@ -98,7 +98,7 @@ test("the energy of several bodies is that of the run itself: it asks no functio
     near(parts.finish.kinetic + parts.finish.spring - parts.start.kinetic - parts.start.spring, total.kinetic + total.spring, 1e-9)
 end)
 
-test("a run is told in sentences", function()
+test("explain describes a run of several bodies", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3, Rd = 0.1 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
     says(rig:simulate { velocity0 = { motor = 3 }, t_end = 40 }, "There is no M.", "clutch links motor and load",
         "It locked at t = 1.1392 at theta = 1.7089", "It stopped at t = 30 at theta = 10.823", "It stays at rest")
@@ -114,7 +114,7 @@ test("a run is told in sentences", function()
     has_not(slips.load:explain(), "because", "|M")
 end)
 
-test("a run that a base or a belt drives is told as one", function()
+test("explain names a support or a belt that drives several bodies", function()
     local rig = system { bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1, Rd = 0.1 } } }
     local run = rig:simulate { belt = { b = 0.2 }, base = excitation.harmonic { omega = 1 }, t_end = 20 }
     says(run, "There is no M.", "b rubs on a belt that moves with velocity vb = 0.2.", "The support accelerates", "the base under a")
@@ -123,7 +123,7 @@ test("a run that a base or a belt drives is told as one", function()
     says(system { I = 1, k = 1, Rd = function() return 0.1 end }:simulate { belt = 1, t_end = 5 }, "The mass rubs on a belt that moves with velocity vb = 1.")
 end)
 
-test("a file of several bodies has their units, and the lines that repeat the run", function()
+test("a file of several bodies has their units, and a header that repeats the run", function()
     local units, pull = { theta = "m", t = "s", M = "N" }, 0.3
     local parts = {
         bodies = {
@@ -166,7 +166,7 @@ test("a file of several bodies has their units, and the lines that repeat the ru
     near(repeated(steady).a.theta, steady.a.theta, 1e-9)
 end)
 
-test("what a run of several bodies can do besides: save, load, status, plot, go on", function()
+test("a run of several bodies can be saved, loaded, plotted and continued, and has a status", function()
     local rig = pair({ I = 1, k = 1, Rd = 0.2 }, { I = 1 }, { Rd = 0.1 })
     local run = rig:simulate { theta0 = { a = 1 }, t_end = 5, dt = 0.5 }
     local back = reloaded(run)
@@ -178,7 +178,7 @@ test("what a run of several bodies can do besides: save, load, status, plot, go 
     has(picture, "a theta", "b theta", "link theta")
 end)
 
-test("half cycles of a body among several begin and end at its own events, also where it stands", function()
+test("half cycles of a body among several begin and end at its own events, also while it rests", function()
     local a = { I = 1, k = 4, Rd = 0.3, Re = 0.4, walls = { lower = -0.4, upper = 0.5, restitution = 0 } }
     local options = { M = excitation.harmonic { amplitude = 2, omega = 1.3 }, theta0 = 0.4, t_end = 12 }
     local alone = system(a):simulate(options):energy().half_cycles
@@ -192,7 +192,7 @@ test("half cycles of a body among several begin and end at its own events, also 
     end
 end)
 
-test("the energy of a link called as a column comes before that column", function()
+test("the energy of a link called like a column hides that column", function()
     local run = system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { belt = { "motor", "load", Rd = 2 } } }
         :simulate { velocity0 = { motor = 3 }, t_end = 4 }
     local energy = run:energy()

@@ -55,7 +55,7 @@ local function random_rig(seed)
     return system { bodies = bodies, links = links }, drive
 end
 
-test("of random rigs the energy closes, and a run in two parts ends as in one", function()
+test("the energy of random systems adds up, and a run in two parts ends like a run in one", function()
     for seed = 1, lots(40) do
         local rig, drive = random_rig(seed)
         local run = rig:simulate(merged(drive, { t_end = 12, dt = 12 }))
@@ -72,7 +72,7 @@ test("of random rigs the energy closes, and a run in two parts ends as in one", 
     end
 end)
 
-test("what is struck while it leans at a wall strikes the wall", function()
+test("a body that is struck while it leans on a wall strikes the wall", function()
     local rig = pair({ I = 1 }, { I = 0.5, walls = { upper = 0, restitution = 0.8 } }, { walls = { upper = 0, restitution = 0.5 } })
     local run = rig:simulate { theta0 = { a = -1 }, velocity0 = { a = 1 }, t_end = 2 }
     -- 1 and 0 become 0.5 and 1; the wall makes that -0.8, these two -0.15 and 0.5, the wall -0.4, and so they end
@@ -92,7 +92,7 @@ test("what is struck while it leans at a wall strikes the wall", function()
     near(run.b.velocity[#run], 1 - 0.5 * 0.1 / 0.5, 1e-14)
 end)
 
-test("a loop whose contacts come to their limits one after the other breaks away", function()
+test("a loop whose contacts reach their limits one after the other breaks away", function()
     local rig = pair({ I = 1, Rd = 1 }, { I = 2, Rd = 1, normal = function(t) return 1 - t end }, { Rd = 0.5 })
     -- b is held by 1 - t and by the pad; from t = 1 by the pad alone
     local run = rig:simulate { M = { b = function(t) return 0.9 end }, t_end = 2 }
@@ -110,7 +110,7 @@ test("a loop whose contacts come to their limits one after the other breaks away
     near(run.b.velocity[#run], (-0.1 * 2 - 0.1 * (16 - 4) + 0.5 * 2) / 2, 1e-12)
 end)
 
-test("what rings about the place at which another sticks comes to rest", function()
+test("a body that rings about the place at which another one sticks comes to rest", function()
     for _, place in ipairs { 0.05, 3, 1000 } do
         local rig = pair({ I = 0.1 }, { I = 3, Rd = 1 }, { k = 15, C = 0.36 })
         local run = rig:simulate { theta0 = { a = place, b = place }, velocity0 = { a = 0.3 }, t_end = 40 }
@@ -122,7 +122,7 @@ test("what rings about the place at which another sticks comes to rest", functio
     end
 end)
 
-test("an end that chatters makes no event of long before none", function()
+test("a run that ends by chatter keeps its earlier events", function()
     local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 }, c = { I = 1 }, d = { I = 1, k = 1, Rd = 0.1 } } }
     local loads = {
         a = function(t) return t < 1 and 0 or 2 end,
@@ -140,7 +140,7 @@ test("an end that chatters makes no event of long before none", function()
     equal(table.concat(told, ", "), "slip a, stick b")
 end)
 
-test("a function that fails for a motion that is only tried is no error", function()
+test("a function that fails only for a trial motion causes no error", function()
     local sys = system { I = 0.02, k = 0, C = 0.1, Rd = 0.1, spring = function(q) return 900 * q + 1e4 * q ^ 3 end }
     local run = sys:simulate { M = function(t) return 1.4 * math.sin(t) end, belt = 0.1, t_end = 1000, dt = 1 }
     equal(run.status, "end")

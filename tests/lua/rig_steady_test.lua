@@ -23,7 +23,7 @@ local function amplitudes(omega)
     return math.abs(second) / determinant, 3 / determinant
 end
 
-test("a chain without friction under a sine: its closed form", function()
+test("the steady motion of a chain without friction under a sine has its closed form", function()
     local s = chain():steady { M = { a = sine(1.3) } }
     local a, b = amplitudes(1.3)
     equal(s.status, "steady")
@@ -45,7 +45,7 @@ test("a chain without friction under a sine: its closed form", function()
     raises_here(function() return s.c end, "this steady motion has no 'c'; its bodies and links are a, b, rod")
 end)
 
-test("a chain that rubs: the motion of a long run, with all that sticks", function()
+test("the steady motion of a chain with friction is that of a long run, with all its sticks", function()
     local rig, M = chain(0.3), { a = sine(1.3) }
     local s = rig:steady { M = M }
     local T, periods = 2 * math.pi / 1.3, 300
@@ -60,7 +60,7 @@ test("a chain that rubs: the motion of a long run, with all that sticks", functi
     assert(s.multipliers[1].abs < 1)
 end)
 
-test("of several bodies, too, a motion is proven to be the only one where none can come apart from it", function()
+test("the motion of several bodies is proven to be the only one where no two motions can separate", function()
     local M = { a = sine(1.3) }
     local even, belt = chain(0.2):steady { M = M }, chain(0.2):steady { M = M, belt = { a = 0.1 } }
     equal(even.unique, "proven")
@@ -76,7 +76,7 @@ test("of several bodies, too, a motion is proven to be the only one where none c
     equal(system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 6.76 } } }:steady { M = { a = sine(1.3) } }.unique, false)
 end)
 
-test("a drill string sticks and slips while it goes round", function()
+test("a drill string sticks and slips while it rotates", function()
     local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
         links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
     local M = { top = function(t, theta, velocity) return 20 * (1 - velocity.top) end }
@@ -96,7 +96,7 @@ test("a drill string sticks and slips while it goes round", function()
     near(even.link.mean, 0, 1e-9)
 end)
 
-test("bodies that come to rotate evenly do so from every start", function()
+test("bodies reach the same steady rotation from every start", function()
     local rig = pair({ I = 1, C = 0.5 }, { I = 1 }, { k = 2, C = 0.1 })
     for i = 200, 300, 5 do
         local s = rig:steady { M = { a = 1 }, theta0 = { a = i * 0.01 }, velocity0 = { b = i * 0.037 } }
@@ -106,7 +106,7 @@ test("bodies that come to rotate evenly do so from every start", function()
     end
 end)
 
-test("a relay that looks at another body hunts", function()
+test("a relay that depends on another body has a limit cycle", function()
     local rig = pair({ I = 1, C = 0.3 }, { I = 0.5, k = 1, C = 0.1, Rd = 0.05 }, { k = 4, C = 0.2 })
     local M = { a = excitation.relay { on = -0.2, off = 0.2, amplitude = { 1, -1 }, of = "theta.b" } }
     local s = rig:steady { M = M }
@@ -114,7 +114,7 @@ test("a relay that looks at another body hunts", function()
     near(s.period, since(rig:simulate { M = M, t_end = 400 }, "switch", 2), 1e-9)
 end)
 
-test("one body whose friction depends on more: as the same with numbers", function()
+test("one body with varying friction that happens to be constant moves as with constant friction", function()
     local own = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 }
     local s = system(own):steady { M = sine(1.3, 2) }
     own.normal = function(t) return 1 end
@@ -126,7 +126,7 @@ test("one body whose friction depends on more: as the same with numbers", functi
     near(varying.multipliers[1].abs, s.multipliers[1].abs, 1e-7)
 end)
 
-test("a damper that is only rubbed along: its period is that of M, glued it does not slip", function()
+test("a damper coupled only by friction moves with the period of M, and adheres if friction is large", function()
     local function steady(Rd)
         return system { bodies = { machine = { I = 1, k = 1, C = 0.02 }, damper = { I = 0.28 } }, links = { joint = { "machine", "damper", Rd = Rd } } }
             :steady { M = { machine = sine(0.9, 0.07) } }
@@ -141,7 +141,7 @@ test("a damper that is only rubbed along: its period is that of M, glued it does
     has_not(loose:explain(), "goes round")
 end)
 
-test("rest, and what is refused", function()
+test("bodies may come to rest, and impossible questions are refused", function()
     local rig = pair({ I = 1, k = 1, Rd = 0.1 }, { I = 1, k = 2, C = 0.1 }, { k = 1 })
     local s = rig:steady { theta0 = { a = 1 } }
     equal(s.status, "rest")
@@ -160,7 +160,7 @@ test("rest, and what is refused", function()
         rig:steady { M = { a = sine(1) } }.b.amplitude, 1e-9)
 end)
 
-test("every member of a steady answer gives a value or a sentence, whatever the status, for one body and for several", function()
+test("every member of a steady answer gives a value or an explanation, whatever the status, for one body and for several", function()
     local members = { "status", "period", "periods", "amplitude", "peak", "mean", "lag", "peak_lag", "stops", "stuck", "multipliers",
         "stable", "unique", "others", "symmetric", "rest", "growth", "run" }
     local function ask(what, s)
@@ -211,7 +211,7 @@ test("every member of a steady answer gives a value or a sentence, whatever the 
     end
 end)
 
-test("controllers that sample or wait: the motion on their grid, as a long run has it", function()
+test("the steady motion with sampled or delayed controllers has their common period, like a long run", function()
     local rig, T = chain(0.3), 2
     local function pi(t, theta, velocity, z, memory)
         memory.sum = 0.9 * memory.sum + 0.02 * (0.3 * math.sin(math.pi * t) - theta.b)
@@ -234,7 +234,7 @@ test("controllers that sample or wait: the motion on their grid, as a long run h
     equal(hold.status, "rest")
 end)
 
-test("branches of two bodies fold where those of the one body do that they are together", function()
+test("branches of two rigidly coupled bodies fold where those of one body do", function()
     local function M(p) return excitation.harmonic { amplitude = 0.4, omega = p.omega } end
     local over = { omega = vector.linspace(0.8, 2, 13) }
     local one = system { I = 1, k = 1, C = 0.2, spring = spring.polynomial { [3] = 1 } }:response { over = over, at = function(p) return { M = M(p) } end }
@@ -305,7 +305,7 @@ test("the response of a chain has the columns of its bodies, and follows at", fu
     })
 end)
 
-test("bifurcation looks at one of the bodies", function()
+test("bifurcation samples one of the bodies", function()
     local rig = chain(0.3)
     local b = bifurcation { over = { a = { 0.5, 1 } }, period = 2 * math.pi / 1.3, skip = 150, keep = 2, workers = 1,
         at = function(p) return { system = rig, of = "b", M = { a = sine(1.3, p.a) } } end }
@@ -317,7 +317,7 @@ test("bifurcation looks at one of the bodies", function()
     end, "of = \"load\"")
 end)
 
-test("what damping bounds is not said to grow near its resonance", function()
+test("a motion bounded by damping is not said to grow near its resonance", function()
     for _, C in ipairs { 0.1, 0.01, 0.001, 0.0001 } do
         local own = { I = 1, k = 1, C = C, Rd = 0.01 }
         local M = excitation.harmonic { omega = 0.999 }
@@ -331,7 +331,7 @@ test("what damping bounds is not said to grow near its resonance", function()
     end
 end)
 
-test("the growth of bodies is that in one period", function()
+test("the growth of bodies is given for one period", function()
     local own = { I = 1, k = 1, Rd = 0.1 }
     local M = excitation.harmonic { omega = 1 }
     local s = system { bodies = { a = own } }:steady { M = { a = M } }
@@ -340,7 +340,7 @@ test("the growth of bodies is that in one period", function()
     near(s.growth, system(own):steady { M = M }.growth, 1e-3)
 end)
 
-test("a steady motion of several bodies that moves has no rest", function()
+test("a steady motion of several bodies that moves has no range of rest", function()
     local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 1, k = 1, C = 0.1 } } }
     equal(rig:steady { M = { a = excitation.harmonic { omega = 1 } } }.rest, nil)
 end)
@@ -361,14 +361,14 @@ test("the stops of a body do not depend on where the period begins", function()
     end
 end)
 
-test("bodies that stand anywhere are not the only ones, and a geared link stands at the angle of its bodies", function()
+test("bodies that rest anywhere are not the only solution, and a geared link rests at the angle of its bodies", function()
     local rig = system { bodies = { a = { I = 1, Rd = 1 }, b = { I = 1, Rd = 1 } }, links = { gear = { "a", "b", k = 0.1, ratio = 2 } } }
     local s = rig:steady { theta0 = { a = 0.5, b = 0.1 } }
     equal(s.unique, false)
     near(s.gear.rest.lower, 0.3, 1e-12)
 end)
 
-test("a response in which the first body stands and another moves is steady", function()
+test("a response in which the first body rests and another moves is steady", function()
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.5 }, b = { I = 1, k = 1, C = 0.1 } } }
     local c = rig:response { over = { x = { 0.1, 1 } }, at = function(p) return { M = { b = sine(0.5, p.x) } } end }
     equal(table.concat(c.status, " "), "steady steady")

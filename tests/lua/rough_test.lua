@@ -26,7 +26,7 @@ local noisy = {
 }
 
 for who, options in pairs(noisy) do
-    test("noise ends a run with a sentence about " .. who .. ", and the tolerance that it names goes on", function()
+    test("noise ends a run with an explanation about " .. who .. ", and the tolerance that it names goes on", function()
         local function run(size, tolerance)
             local task = options(size)
             task.t_end, task.dt, task.integrator = 12, 0.5, tolerance and integrator.spectral { tolerance = tolerance }
@@ -50,7 +50,7 @@ for who, options in pairs(noisy) do
     end)
 end
 
-test("noise in M is followed as exactly as it can be, also with two bodies", function()
+test("noise in M is followed as accurately as possible, also with two bodies", function()
     local function run(size)
         local rig = pair({ I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }, { I = 1, k = 2, Rd = 0.1 }, { k = 0.5 })
         local M = { a = function(t) return math.sin(0.7 * t) + size * noise(t) end }

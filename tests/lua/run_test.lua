@@ -3,7 +3,7 @@ dofile "tests/lua/support.lua"
 local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12 }
 local run = nd:simulate { M = excitation.harmonic { frequency = 0.7 }, theta0 = 1, t_end = 5, dt = 0.01 }
 
-test("columns are vectors of one length, and hold what their names say", function()
+test("columns are vectors of equal length with the quantities that their names say", function()
     for _, name in ipairs(run.names) do
         equal(#run[name], 501)
     end
@@ -24,7 +24,7 @@ test("a column outlives its run", function()
     equal(theta, vector(copy))
 end)
 
-test("run:columns picks by name or number", function()
+test("run:columns selects by name or number", function()
     local t, theta = run:columns("t", "theta")
     assert(t == run.t and theta == run.theta)
     local M, first = run:columns(4, 1)
@@ -34,7 +34,7 @@ test("run:columns picks by name or number", function()
     raises_here(function() run:columns(7) end, "7")
 end)
 
-test("a run is data with more, and events always have a velocity", function()
+test("a run can be used as data, and events always have a velocity", function()
     equal(run:select("t", "theta").theta, run.theta)
     equal(run:sort("theta").theta[1], run.theta:min())
     equal(run[2].t, run.t[2])
@@ -101,7 +101,7 @@ test("run:at gives theta and velocity at rows and between them", function()
     raises_here(function() run.at(1) end, "use a colon: run:at(t)")
 end)
 
-test("a run shows where it came from and cannot be changed", function()
+test("a run shows its origin and cannot be changed", function()
     equal(tostring(run.system), tostring(nd))
     equal(tostring(run.integrator), "integrator.exact{}")
     raises_here(function() run.theta = 1 end, "a run cannot be changed")
@@ -133,7 +133,7 @@ test("a run saved as the record of 1989 reads back to the last bit", function()
     raises_here(function() return old.velocity end, "no field 'velocity'", "velocity_over_omega0")
 end)
 
-test("columns of a file that have other names are fields, too", function()
+test("columns of a file with other names are fields, too", function()
     local name = temporary ".csv"
     write(name, "time,acceleration\n0,1\n1,2.5\n")
     local record = load(name)
@@ -142,7 +142,7 @@ test("columns of a file that have other names are fields, too", function()
     raises_here(function() return record.theta end, "there is no column 'theta' among time, acceleration")
 end)
 
-test("a choice of columns can be saved", function()
+test("a selection of columns can be saved", function()
     local name = temporary ".csv"
     equal(table.concat(reloaded(run, { columns = { "theta", 3 } }).names, " "), "theta velocity")
     refuses(function(o) run:save(name, o) end, {
@@ -153,7 +153,7 @@ test("a choice of columns can be saved", function()
     raises_here(function() run:save(temporary ".dat", { columns = { "t" } }) end, "six columns")
 end)
 
-test("a name that says no kind of file, or a place that cannot be written, is an error", function()
+test("an unknown file type, or a path that cannot be written, is an error", function()
     refuses(function(name) run:save(name) end, {
         { "run.txt", "run.txt", ".csv", ".dat" },
         { "run", ".csv", ".dat" },
@@ -211,7 +211,7 @@ test("the comment block repeats a scripted M with its local and global variables
     check_repeats(nd:simulate { M = countdown, t_end = 3, dt = 0.1 }, "recursion")
 end)
 
-test("what cannot be written down is said in the comment block", function()
+test("a value that cannot be written as Lua text is named in the comment block", function()
     local thread = coroutine.create(print)
     local name = temporary ".csv"
     nd:simulate { M = function(t) return thread and 1 or 0 end, t_end = 1, dt = 1 }:save(name)
@@ -255,7 +255,7 @@ test("the acceleration is the derivative of the velocity, and 0 at rest", functi
     equal(walled.acceleration:max(), 0.0)
 end)
 
-test("a run tells its cycle as data", function()
+test("run:cycle returns the cycle as data", function()
     local sys = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }
     local s, c = sys:steady{ belt = 0.1 }, sys:simulate{ belt = 0.1, t_end = 60 }:cycle()
     near(c.period, s.period, 1e-9)

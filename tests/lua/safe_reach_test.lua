@@ -125,7 +125,7 @@ strangers.check({
     ["drawing within the folder"] = draws "a.svg" .. draws "sub/b.png" .. draws "c.pdf" .. draws "e.txt",
 }, options, 0, ("saved\n"):rep(4), folder)
 
-test("what stands outside of the folder is as it was", function()
+test("files outside of the folder are unchanged", function()
     local listing = io.popen(("cd '%s' && ls && cat secret.csv"):format(outer)):read "a"
     equal(listing, "lab\nsecret.csv\nt,M\n0,1\n1,2\n")
 end)

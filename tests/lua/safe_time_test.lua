@@ -61,7 +61,7 @@ local removed <close> = setmetatable({}, { __close = function() os.execute("rm -
 strangers.check({
     ["a file that grows"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 100, dt = 1e-2 } local c = {} for i = 1, 1e4 do c[i] = 'theta' end while true do pcall(run.save, run, 'big.csv', { columns = c }) end",
 }, options, 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n", folder)
-test("what was not written to its end is gone", function()
+test("a file that was not completely written is removed", function()
     equal(io.popen(("ls -A '%s'"):format(folder)):read "a", "")
 end)
 

@@ -71,7 +71,7 @@ local function run(writer, reader, writes, reads)
     return result
 end
 
-test("what one function writes and another reads is of the present time, or the run says what it is", function()
+test("a variable that one function writes and another reads has its present value, or the run reports the contradiction", function()
     local told, right = 0, 0
     for _, writer in ipairs(names) do
         for _, reader in ipairs(names) do

@@ -2,7 +2,7 @@ dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
 
-test("rows stand exactly on the grid or at a list of times, from a table or a vector, and the last one at t_end", function()
+test("rows are exactly on the grid or at a list of times, from a table or a vector, and the last one at t_end", function()
     equal(nd:simulate { t_end = 1, dt = 0.3 }.t, vector { 0, 0.3, 0.6, 3 * 0.3, 1 })
     local times = { 0, 0.1, 0.25, 1 / 3, 1.7 }
     for _, list in ipairs { times, vector(times) } do equal(nd:simulate { theta0 = 1, times = list }.t, vector(times)) end
@@ -15,7 +15,7 @@ test("times = {} keeps no rows, but the events and the motion", function()
     near((run:at(1)), 1, 1e-9) -- h = T0/1000: the error of RK4 is about 2 pi (2 pi h)^4/120 = 8e-11
 end)
 
-test("a function of t is called with t alone, one of more parameters with theta and velocity", function()
+test("a function of one parameter is called with t alone, one of more parameters with theta and velocity", function()
     local count, theta, velocity
     nd:simulate { M = function(...) count, _, theta, velocity = select("#", ...), ... return 0 end, theta0 = 1, t_end = 0.1, dt = 0.1 }
     equal(count, 3)
@@ -30,7 +30,7 @@ test("a function of t is called with t alone, one of more parameters with theta 
     equal(nd:simulate { M = callable, t_end = 1, dt = 1 }.M[2], 2.0)
 end)
 
-test("the default integrator is exact where that takes M, else spectral", function()
+test("the default integrator is exact if that accepts M, otherwise spectral", function()
     equal(tostring(nd:simulate { t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
     equal(tostring(nd:simulate { M = function(t) return 0 * t end, t_end = 1, dt = 1 }.integrator), "integrator.exact{}")
     local sampled = function(t) return #{} * t end
@@ -41,7 +41,7 @@ test("the default integrator is exact where that takes M, else spectral", functi
       "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}")
 end)
 
-test("t_start shifts the window, and nothing is recorded as an event there", function()
+test("t_start shifts the window, and is not an event", function()
     local run = nondimensional {}:simulate { theta0 = 1, t_start = 5, t_end = 6.2, dt = 0.1 }
     equal(run.t[1], 5.0)
     near(run.events[1].t, 5.5, 1e-9)
@@ -49,7 +49,7 @@ test("t_start shifts the window, and nothing is recorded as an event there", fun
     equal(#run.events, 2)
 end)
 
-test("missing, superfluous and misspelt options are errors that show the way", function()
+test("missing, superfluous and misspelt options are errors that suggest the right ones", function()
     refuses(function(o) nd:simulate(o) end, {
         { { dt = 0.1 }, "sys:simulate needs t_end, for example" },
         { { times = {} }, "needs t_end" },
@@ -72,7 +72,7 @@ test("values of a wrong kind are errors that name the option and the value", fun
     })
 end)
 
-test("windows and grids that cannot be are errors with their values", function()
+test("impossible windows and grids are errors with their values", function()
     refuses(function(o) nd:simulate(o) end, {
         { { t_end = 0, dt = 0.1 }, "t_end = 0 must be after t_start = 0" },
         { { times = { 0, 1, 1 } }, "times[3] = 1", "must increase" },
@@ -109,7 +109,7 @@ test("without dt and times a run has 40 rows a natural period, but 1000 to 10000
     has_not(card(0.1), "fewer")
 end)
 
-test("without dt and times a short run has 1001 rows, and goes on with the same distance", function()
+test("without dt and times a short run has 1001 rows, and a continued one keeps their distance", function()
     local run = nd:simulate { theta0 = 1, t_start = 3, t_end = 7 }
     equal(#run, 1001)
     near(run.t[2] - run.t[1], 0.004, 1e-15)

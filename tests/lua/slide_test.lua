@@ -10,7 +10,7 @@ local function switches(run)
     return found
 end
 
-test("a feedback -A sgn v is dry friction", function()
+test("a feedback -A sgn v acts as dry friction", function()
     local A, f = 0.7, function(t) return 0.9 * math.sin(0.8 * t) + 0.3 * math.sin(2.1 * t) end
     local sgn = function(_, _, v) return v > 0 and -0.7 or 0.7 end
     local both = function(t, _, v) return (v > 0 and -0.7 or 0.7) + 0.9 * math.sin(0.8 * t) + 0.3 * math.sin(2.1 * t) end
@@ -38,7 +38,7 @@ test("a feedback -A sgn v is dry friction", function()
     end
 end)
 
-test("a run may begin on the surface, without an event there", function()
+test("a run may begin on the sliding surface, without an event there", function()
     local run = system { I = 1, k = 1 }:simulate {
         M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 0.3, t_end = 10,
     }
@@ -47,7 +47,7 @@ test("a run may begin on the surface, without an event there", function()
     equal(#switches(run), 0)
 end)
 
-test("a controller in sliding mode decays as its surface says, whatever disturbs the mass", function()
+test("a controller in sliding mode decays as its surface prescribes, whatever disturbs the mass", function()
     local c = 2
     local run = system { I = 1, k = 1, C = 0.2 }:simulate {
         M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.8 * math.sin(3 * t) end, theta0 = 1, t_end = 10,
@@ -66,7 +66,7 @@ test("a controller in sliding mode decays as its surface says, whatever disturbs
     end
 end)
 
-test("a surface may be curved and may move", function()
+test("a sliding surface may be curved and may move", function()
     -- theta follows theta' = cos t - theta^3 from where it is reached
     local run = system { I = 1, k = 0.5 }:simulate {
         M = function(t, theta, v) if v + theta ^ 3 - math.cos(t) < 0 then return 20 end return -20 end, theta0 = 0.5,
@@ -82,7 +82,7 @@ test("a surface may be curved and may move", function()
     near(run.theta[#run], truth.x[#truth], 1e-11)
 end)
 
-test("it leaves the surface where one side no longer drives it back", function()
+test("a slide ends where one side no longer drives the motion back", function()
     local slope = 0.3
     local run = system { I = 1, k = 0 }:simulate {
         M = function(t, _, v) return (v > 0 and -1 or 1) + slope * t end, t_end = 8,
@@ -96,7 +96,7 @@ test("it leaves the surface where one side no longer drives it back", function()
     near(run.theta[#run], slope * s ^ 3 / 6, 1e-11)
 end)
 
-test("the sign may have three values, and follow from other conditions", function()
+test("the sign may have three values, and may result from other conditions", function()
     local sys = system { I = 1, k = 1 }
     local function go(M) return sys:simulate { M = M, theta0 = 3, t_end = 6 } end
     local two = go(function(_, theta, v) return v + 2 * theta > 0 and -5 or 5 end)
@@ -115,7 +115,7 @@ test("the sign may have three values, and follow from other conditions", functio
     end
 end)
 
-test("dry friction turns during a slide: the load makes up for it", function()
+test("when dry friction reverses during a slide, the load compensates", function()
     local run = system { I = 1, k = 1, Rd = 0.3 }:simulate {
         M = function(t, theta, v) return v + 2 * (theta - math.sin(t)) > 0 and -5 or 5 end, theta0 = 1, t_end = 12,
     }
@@ -131,7 +131,7 @@ test("dry friction turns during a slide: the load makes up for it", function()
     end
 end)
 
-test("a break of M during a slide is no event", function()
+test("a break of M during a slide is not an event", function()
     local run = system { I = 1, k = 1 }:simulate {
         M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + (t > 1.7 and 1 or 0) end, theta0 = 3, t_end = 4,
     }
@@ -140,7 +140,7 @@ test("a break of M during a slide is no event", function()
     near(run.theta[#run], from.theta * math.exp(-2 * (4 - from.t)), 1e-12)
 end)
 
-test("another condition of the load changes during a slide", function()
+test("another condition of the load may change during a slide", function()
     local function sgn(x) return x > 0 and 1 or x < 0 and -1 or 0 end
     local sys = system { I = 1, k = 0.6, C = 0.2 }
     -- At velocity 0.4 the surface needs M = 0.6 theta + 0.08; the load allows 0.9 on either side of its rest.
@@ -160,7 +160,7 @@ test("another condition of the load changes during a slide", function()
     end
 end)
 
-test("a load takes a standing mass along its surface, against dry friction", function()
+test("a load moves a resting mass along its surface, against dry friction", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, theta0 in ipairs { 0, 0.4, -0.8 } do  -- the last one is let go by its spring
         local run = sys:simulate {
@@ -185,7 +185,7 @@ test("a load takes a standing mass along its surface, against dry friction", fun
     near(weak.theta, sys:simulate { M = 1, t_end = 1 }.theta, 1e-13)
 end)
 
-test("a run that goes on slides on, without an event", function()
+test("a continued run continues its slide, without an event", function()
     local task = { M = function(t, theta, v) return (v + 2 * theta > 0 and -5 or 5) + 0.5 * math.sin(t) end, theta0 = 3, t_end = 8 }
     local whole = system { I = 1, k = 1 }:simulate(task)
     task.t_end = 4
@@ -194,7 +194,7 @@ test("a run that goes on slides on, without an event", function()
     near(longer.theta[#longer], whole.theta[#whole], 1e-13)
 end)
 
-test("a steep line comes near to the slide", function()
+test("a steep continuous feedback approximates the slide", function()
     local function run(M) return system { I = 1, k = 2 }:simulate { M = M, theta0 = 1, t_end = 5 } end
     local slides = run(function(_, theta, v) return v + theta > 0 and -4 or 4 end)
     for _, width in ipairs { 1e-2, 1e-3 } do
@@ -206,7 +206,7 @@ test("a steep line comes near to the slide", function()
     end
 end)
 
-test("a jump without the velocity is crossed, not slid along", function()
+test("a jump that does not depend on velocity is crossed, without sliding", function()
     local run = system { I = 1, k = 0 }:simulate {
         M = function(_, theta) return theta > 0 and -1 or 1 end, theta0 = -0.5, t_end = 20,
     }
@@ -262,7 +262,7 @@ test("a feedback -A sgn v beside dry friction adds to it", function()
     assert(ends > 40)
 end)
 
-test("a body that comes to rest right at the limit of both holds", function()
+test("a body that comes to rest exactly at the sum of both limits is held", function()
     local M = function(_, _, v) return v > 0 and -0.4 or v < 0 and 0.4 or 0 end
     local run = system { I = 1, k = 1, Rd = 0.2, Re = 0.3 }:simulate { M = M, theta0 = 3, t_end = 20 }
     equal(run.status, "stuck")
@@ -281,7 +281,7 @@ test("a feedback that falls with speed makes Coulomb's friction Stribeck's", fun
     assert(#dry.events > 5, #dry.events)
 end)
 
-test("such a feedback adds to limits that vary, too", function()
+test("such a feedback adds to varying limits, too", function()
     local A = 0.7
     local function f(t) return 1.1 * math.sin(0.8 * t) + 0.5 * math.sin(2.1 * t) end
     local function Rd(t) return 0.3 + 0.15 * math.sin(0.3 * t) end
@@ -314,7 +314,7 @@ test("such a feedback also adds to the friction of belts and links", function()
     equal(kinds_of(run), kinds_of(dry))
 end)
 
-test("a slide that dies out beside dry friction is at rest to rounding, and ends in no error", function()
+test("a slide that dies out with dry friction is at rest to rounding, without an error", function()
     for _, Rd in ipairs { 0.01, 1 } do
         local run = system { I = 1, k = 1, Rd = Rd }:simulate {
             M = function(_, theta, v) return v + 5 * theta > 0 and -8 or 8 end, theta0 = 3, t_end = 40,
@@ -351,7 +351,7 @@ test("a state slides where its rate jumps, and follows the surface", function()
     near(run.states.z[#run.states.z], 0.25 * 6 ^ 2, 1e-10)
 end)
 
-test("explain() says when it slid, and why it no longer did", function()
+test("explain() says when the mass slid along a surface, and why that ended", function()
     local function told(run) return (run:explain():gsub("%s+", " ")) end
     local story = told(system { I = 1, k = 0 }:simulate { M = function(t, _, v) return (v > 0 and -1 or 1) + 0.3 * t end, t_end = 8 })
     has(story, "From t = 0 to 3.3333 it slid along a surface on which M jumps")

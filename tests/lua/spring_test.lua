@@ -2,7 +2,7 @@ dofile "tests/lua/support.lua"
 
 local duffing = spring.polynomial { [3] = 0.5 }
 
-test("a spring is an option of a system, and the text of the system makes it again", function()
+test("a spring is an option of a system, and the system's text reproduces it", function()
     for _, own in ipairs {
         duffing, spring.polynomial { [1] = -1, [2] = 0.25, [5] = 3 }, function(theta) return 0.5 * theta ^ 3 end,
     } do
@@ -17,7 +17,7 @@ test("a spring is an option of a system, and the text of the system makes it aga
     equal(system { I = 1, k = 1, spring = spring.polynomial {} }.spring, nil)
 end)
 
-test("with changes a spring, or takes it away", function()
+test("with changes a spring, or removes it", function()
     local sys = system { I = 1, k = 1, Rd = 0.1, spring = duffing }
     equal(tostring(sys:with { k = 2 }.spring), tostring(duffing))
     equal(sys:with { spring = spring.polynomial {} }.spring, nil)
@@ -25,7 +25,7 @@ test("with changes a spring, or takes it away", function()
     equal(sys.dead_zone, nil)  -- Re/k is none any more
 end)
 
-test("a run with a spring of its own goes on, with states, to a steady motion", function()
+test("a run with its own spring and states can be continued to a steady motion", function()
     local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.05, spring = duffing }
     local M = excitation.harmonic { frequency = 0.1 }
     local half = sys:simulate { M = M, t_end = 10, dt = 1 }
@@ -38,7 +38,7 @@ test("a run with a spring of its own goes on, with states, to a steady motion", 
     near(sys:response { over = { frequency = vector.linspace(0.1, 0.2, 2) }, between = true }.amplitude[1], s.amplitude, 1e-7)
 end)
 
-test("a spring that fails is told with the angle and its line, and what ran is kept", function()
+test("a spring that fails is reported with the angle and its line, and the rows until then are kept", function()
     local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-9 } } do
         raises(function() soft:simulate { velocity0 = 4, t_end = 20, dt = 0.01, integrator = method } end,
@@ -55,7 +55,7 @@ test("a spring that fails is told with the angle and its line, and what ran is k
     end
 end)
 
-test("what is wrong with a spring is one sentence with the name of the option", function()
+test("each mistake in a spring is one sentence with the name of the option", function()
     raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
     refuses(spring.polynomial, {
         { { [0.5] = 1 }, "the power 0.5 must be a whole number from 1 to 31" },
@@ -68,7 +68,7 @@ test("what is wrong with a spring is one sentence with the name of the option", 
     raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
 end)
 
-test("a stiff contact that is touched for a short while is felt", function()
+test("a stiff contact that is touched only briefly is found", function()
     local stiff = 1e4
     local function contact(theta) return theta > 0.5 and stiff * (theta - 0.5) or 0 end
     for _, Rd in ipairs { 0, 0.05 } do
@@ -83,7 +83,7 @@ test("a stiff contact that is touched for a short while is felt", function()
     end
 end)
 
-test("a motion that a softening spring lets go ends with a sentence about itself, not about M", function()
+test("a motion that a softening spring releases ends with a message about the motion, not about M", function()
     local sys = system { I = 1, k = 40, C = 1, Rd = 8, spring = spring.polynomial { [3] = -4 } }
     for _, M in ipairs { 40 * excitation.harmonic { frequency = 0.5 }, excitation.constant { amplitude = 200 } } do
         for _, with in ipairs { integrator.spectral {}, integrator.rk4 { h = 1e-3 } } do
@@ -94,7 +94,7 @@ test("a motion that a softening spring lets go ends with a sentence about itself
     end
 end)
 
-test("a spring that fails where the mass stands between walls ends the run, and tells why", function()
+test("a spring that fails while the mass rests between walls ends the run with the reason", function()
     local function brittle(theta)
         if theta > 0.5 then error("too far") end
         return theta

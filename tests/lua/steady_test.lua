@@ -10,7 +10,7 @@ local function late(run, from)
     return (events.theta:max() - events.theta:min()) / 2, #events:filter(function(e) return e.kind == "stick" end)
 end
 
-test("all that is known about a steady motion", function()
+test("a steady answer has all its members", function()
     local s = sliding:steady{ M = harmonic(1.35) }
     equal(s.status, "steady")
     near(s.amplitude, 0.860792180, 1e-9) -- 80 digits
@@ -34,7 +34,7 @@ test("all that is known about a steady motion", function()
     equal(tostring(s), "steady: period 0.740741 T0, amplitude 0.860792 Mc/k, 0 stops a period")
 end)
 
-test("where there is no motion, or too much of it, the answer says so", function()
+test("without a motion, or with an unbounded one, the answer says so", function()
     local s = sliding:steady{ M = harmonic(1) }
     equal(s.status, "grows")
     near(s.growth, math.pi - 2, 1e-12)
@@ -53,7 +53,7 @@ test("where there is no motion, or too much of it, the answer says so", function
     assert(nondimensional{ friction_ratio = 0.1 }:steady{ M = harmonic(0.5) }:explain():find("one%s+of%s+a%s+family"))
 end)
 
-test("the mean of a motion that is kicked is that of its impulses", function()
+test("the mean of a motion with impulses includes them", function()
     local I, k, factor = 5, 7, 0.7
     local s = system { I = I, k = k, C = 0.2 }:steady { M = excitation.harmonic { omega = 0.9 }, events = {
         { when = function(t, theta) return theta - 0.05 end, act = function(t, theta, velocity) return theta, factor * velocity end },
@@ -68,7 +68,7 @@ test("the mean of a motion that is kicked is that of its impulses", function()
     near(same.a.mean, s.mean, 1e-13)
 end)
 
-test("a Lua function needs a period, which must be true; native sums know theirs", function()
+test("a Lua function needs a period, which must be true; native sums have known periods", function()
     local f = function(t) return math.sin(2*math.pi*1.35*t) end
     near(sliding:steady{ M = f, period = 1 / 1.35 }.amplitude, 0.860792180, 1e-9)
     near(sliding:steady{ M = harmonic(0.5) + 0.3*harmonic(0.75) }.period, 4, 1e-9)
@@ -86,7 +86,7 @@ test("a Lua function needs a period, which must be true; native sums know theirs
     raises(function() sliding:steady{ M = function() return 0/0 end, period = 1 } end, "nan")
 end)
 
-test("the halves of a function's period are alike only when they are", function()
+test("the halves of a function's period are symmetric only if they are exactly so", function()
     local light = nondimensional{ zeta = 0.1 } -- without friction: closed forms
     local function lifted(t) return math.sin(0.8 * math.pi * t) + 0.5 end
     local s = light:steady{ M = lifted, period = 2.5 }
@@ -105,7 +105,7 @@ test("the halves of a function's period are alike only when they are", function(
     assert(light:steady{ M = function(t) return math.sin(0.8 * math.pi * t) end, period = 2.5 }.symmetric)
 end)
 
-test("beside resonance a slow beat is no growth, whatever holds the mass that never stops", function()
+test("near resonance a slow beat is not called growth, whatever friction acts on the moving mass", function()
     local load = harmonic(1.0003)
     local truth = theory.den_hartog{ r = 1.0003, friction_ratio = 0.5 }
     local s = system{ I = 1 / (4 * math.pi ^ 2), k = 1, Rd = 0.5, Re = 0.6 }:steady{ M = load }
@@ -118,7 +118,7 @@ test("beside resonance a slow beat is no growth, whatever holds the mass that ne
     has_not(far:explain(), "grows")
 end)
 
-test("feedback: a motor as a dashpot gives what the dashpot gives", function()
+test("a motor written as feedback gives the same result as a damper", function()
     local damped = system{ I = 1, k = 40, C = 2, Rd = 0.4 }:steady{ M = excitation.harmonic{ amplitude = 3, frequency = 0.8 } }
     local fed = system{ I = 1, k = 40, Rd = 0.4 }:steady{
         M = function(t, theta, velocity) return 3*math.sin(2*math.pi*0.8*t) - 2*velocity end, period = 1.25 }
@@ -127,7 +127,7 @@ test("feedback: a motor as a dashpot gives what the dashpot gives", function()
     equal(fed.lag, nil)
 end)
 
-test("a subharmonic motion is found with the fewest periods after which it comes back", function()
+test("a subharmonic motion is found with the smallest number of periods", function()
     -- A stiff swing far below and above its resonance: each start has its motion, and each its own number of periods.
     local sys = system{ I = 1, k = 4*math.pi^2, C = 0.05, Rd = 0.02, Re = 0.02 }
     local M = function(t, theta) return 30*math.sin(6*math.pi*t) - 400*theta^3 end
@@ -148,7 +148,7 @@ test("a subharmonic motion is found with the fewest periods after which it comes
     end
 end)
 
-test("run:steady goes on from where the run has got to", function()
+test("run:steady continues from the end of the run", function()
     local M = harmonic(1)
     local run = nondimensional{ friction_ratio = 0.836 }:simulate{ M = M, theta0 = 1, t_end = 7.3, dt = 0.1 }
     near(run:steady().amplitude, 0.1291703518, 1e-10)
@@ -163,7 +163,7 @@ test("an error of M ends the search", function()
     end, "enough")
 end)
 
-test("with a dead time in the loop the run itself goes on until it repeats itself: a linear oscillator by hand", function()
+test("with a delay in the loop the run itself continues until it repeats: a linear oscillator agrees with its closed form", function()
     local light, w, G, D = system{ I = 1, k = 1, C = 0.3 }, 1.2, 0.2, 0.05
     for _, by in ipairs{ 0.02, 0.4, 3, 11 } do -- less than a look apart, and more than two periods of M
         local late = excitation.delayed(function(t, theta, velocity) return -G * theta - D * velocity end, { by = by })
@@ -185,14 +185,14 @@ test("with a dead time in the loop the run itself goes on until it repeats itsel
     end
 end)
 
-test("a motion that turns slowly as it settles has the period of M, and not the five of them after which it is nearly back", function()
+test("a motion that turns slowly as it settles has the period of M, not the five after which it nearly returns", function()
     local late = excitation.delayed(function(t, theta, velocity) return -0.02 * velocity end, { by = 0.3 })
     local s = system{ I = 1, k = 1, C = 0.02 }:steady{ M = excitation.harmonic{ omega = 1.2 } + late, period = 2 * math.pi / 1.2 }
     equal(s.periods, 1)
     equal(s.symmetric, true)
 end)
 
-test("with a dead time, friction and stops it is the end of a long run, also in response", function()
+test("with a delay, friction and stops the steady motion is the end of a long run, also in response", function()
     local dry = system{ I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.35 }
     local function M(omega)
         return excitation.harmonic{ omega = omega } + excitation.delayed(function(t, theta, velocity) return -0.3 * velocity end, { by = 0.5 })
@@ -215,7 +215,7 @@ test("with a dead time, friction and stops it is the end of a long run, also in 
     equal(torn.status, "grows")
 end)
 
-test("what a controller that samples holds goes on from one period into the next", function()
+test("the held output of a sampled controller carries over to the next period", function()
     local dry = nondimensional{ friction_ratio = 0.3, zeta = 0.05 }
     local function sampled(every) return excitation.sampled(function(t) return math.sin(math.pi * t) end, { every = every }) end
     local run = dry:simulate{ M = sampled(0.3), t_end = 306, dt = 0.01 }
@@ -233,7 +233,7 @@ test("what a controller that samples holds goes on from one period into the next
     near(more:steady().amplitude, dry:steady{ M = harmonic(0.4), belt = 0.3 }.amplitude, 1e-9)
 end)
 
-test("the peak of a motion that stands at its top is where it came to stand, wherever the period begins", function()
+test("the time of the peak of a motion that rests at its maximum is its stop, wherever the period begins", function()
     for phase = 0, 6, 0.5 do
         local s = nondimensional{ friction_ratio = 0.4, zeta = 0.1 }:steady{ M = excitation.harmonic{ frequency = 0.4, phase = phase } }
         local stick
@@ -255,7 +255,7 @@ test("a mass that friction can hold in many places rests where a run leaves it",
     end
 end)
 
-test("a motion on which no run stays is found if the number of its periods is given", function()
+test("an unstable motion is found if the number of its periods is given", function()
     local well = system{ I = 1, k = 0, C = 0.3, spring = function(x) return x ^ 3 - x end }
     local M = excitation.harmonic{ amplitude = 0.5, omega = 1.2 }
     equal(well:steady{ M = M, theta0 = 0.5 }.status, "none") -- it is chaotic
@@ -264,7 +264,7 @@ test("a motion on which no run stays is found if the number of its periods is gi
     near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
 end)
 
-test("a motion of any size is as it is in other units", function()
+test("the result does not depend on the units", function()
     local function amplitude(u, task) return system{ I = 1, k = 40, C = 0.1, Rd = 0.3 * u, Re = 0.35 * u }:steady(task).amplitude / u end
     local sine, square = excitation.harmonic{ frequency = 0.7 }, excitation.square{ frequency = 0.7 }
     for _, u in ipairs{ 1e-290, 1e-200, 1e-160, 1e99, 1e101, 1e200, 1e290 } do
@@ -275,7 +275,7 @@ test("a motion of any size is as it is in other units", function()
     end
 end)
 
-test("with Re > Rd the motion that a run comes to is told, not another one beside it", function()
+test("with Re > Rd the motion that a run reaches is reported, not another one", function()
     local sys = nondimensional{ friction_ratio = 0.2, breakaway_ratio = 0.4 }
     for _, r in ipairs{ 0.545, 0.55, 0.555, 0.56 } do -- below 0.56 the run stops once a period, and a motion without stops is near
         local M = excitation.harmonic{ frequency = r }
@@ -288,7 +288,7 @@ test("with Re > Rd the motion that a run comes to is told, not another one besid
     near(sys:steady{ M = excitation.harmonic{ frequency = 0.55 } }.amplitude, 1.4584044928, 1e-9) -- by exact steps elsewhere
 end)
 
-test("what a load comes to just before it jumps back, at the end of its period, counts for where the mass may rest", function()
+test("the limit of a load before its jump at the end of the period counts for the range of rest", function()
     local sys = nondimensional{ zeta = 0.3, friction_ratio = 0.7, breakaway_ratio = 1.05 }
     for _, M in ipairs{ excitation.sawtooth{ period = 2 }, excitation.sawtooth{ period = 0.7, at = 0.1 } } do
         for _, theta0 in ipairs{ 0, 0.1 } do -- from 0.1 it creeps up to the edge of where it may rest
@@ -300,7 +300,7 @@ test("what a load comes to just before it jumps back, at the end of its period, 
     end
 end)
 
-test("multipliers beside a grazing are those of the motion, from wherever it was found", function()
+test("multipliers near a grazing are those of the motion, from whatever start it was found", function()
     -- This motion keeps 1e-3 from the speed of the belt (di Bernardo, Kowalczyk and Nordmark 2003: grazing at 1.7077997).
     -- The values are those of the variational equation, by an integrator of order 8.
     local sys = system { I = 1, k = 1, friction = friction.law(function(s) return 1.5 - 1.5 * s + 0.45 * s ^ 3 end) }
@@ -313,14 +313,14 @@ test("multipliers beside a grazing are those of the motion, from wherever it was
     end
 end)
 
-test("what grows linearly does so by what its closed form says", function()
+test("linear growth has the rate of its closed form", function()
     local uneven = friction.asymmetric { forward = { Rd = 0.1 }, backward = { Rd = 0.3 } }
     near(system{ I = 1, k = 1, friction = uneven }:steady{ M = excitation.harmonic{ omega = 1 } }.growth, math.pi - 0.8, 1e-9)
     local fed = system{ I = 1, k = 1 }:steady{ M = function(_, _, v) return v > 0 and 0.1 or -0.1 end, velocity0 = 1 }
     near(fed.growth, 0.4, 0.02)
 end)
 
-test("a search begins with the states of the run, and where a step is over", function()
+test("a search begins with the states of the run, and after a step of M is over", function()
     local flip = { when = function(t) return t - 5 end, act = function(_, theta, velocity, z) z.z = -1 return theta, velocity end }
     local run = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }:simulate{ t_end = 20, dt = 1, events = { flip },
         M = excitation.harmonic{ omega = 1.3 } + excitation.scripted(function(_, _, _, z) return z.z end),

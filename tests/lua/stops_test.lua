@@ -1,7 +1,7 @@
 -- Elastic stops, which push back with k x + C x' at the depth x and never pull.
 dofile "tests/lua/support.lua"
 
-test("a block on a damped stop leaves it where the stop would begin to pull", function()
+test("a block leaves a damped stop where the stop would begin to pull", function()
     local k, C = 4, 1
     local run = system { I = 1, k = 0, walls = { upper = 1, stiffness = k, damping = C } }:simulate { velocity0 = 1, t_end = 5 }
     local w = math.sqrt(k - C ^ 2 / 4)
@@ -16,7 +16,7 @@ test("a block on a damped stop leaves it where the stop would begin to pull", fu
     says(run, "wall at theta = 1 that push", "hit the wall 1 time")
 end)
 
-test("elastic stops are the torque that anybody can write as M", function()
+test("elastic stops equal the torque that a user can write as M", function()
     for _, C in ipairs { 0, 3 } do
         local walls = { lower = -0.5, upper = 0.3, stiffness = 60, damping = C }
         local f = function(t) return 2 * math.sin(1.7 * t) end
@@ -34,7 +34,7 @@ test("elastic stops are the torque that anybody can write as M", function()
     end
 end)
 
-test("a block that a damped stop leaves inside of it is seen at the other one", function()
+test("a block that leaves a damped stop still compressed reaches the other one in time", function()
     -- It leaves the lower stop before it is out of it, and flies freely to the upper one in one stretch.
     local run = system { I = 1, k = 0, walls = { lower = -1, upper = 1, stiffness = 40, damping = 4 } }:simulate { velocity0 = -1, t_end = 8 }
     local impacts = of_kind(run, "impact")
@@ -52,7 +52,7 @@ test("stiff stops are rigid walls", function()
     equal(#of_kind(stiff, "impact"), #of_kind(rigid, "impact"))
 end)
 
-test("a link has elastic stops, and a body on them may stand", function()
+test("a link has elastic stops, and a body may rest on them", function()
     local rig = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { gap = { "a", "b", walls = { lower = -0.1, upper = 0.1, stiffness = 50, damping = 1 } } } }
     local run = rig:simulate { velocity0 = { a = 1 }, t_end = 3 }
     near(run.a.velocity[#run] + 2 * run.b.velocity[#run], 1, 1e-13)
@@ -125,7 +125,7 @@ test("dry friction does not hold a body against an elastic stop that pushes hard
     near(run.theta, named.a.theta, 1e-13)
 end)
 
-test("what a pressed stop stores stands in the energy at the end as in its last row", function()
+test("the energy stored by a pressed stop is the same at the end as in the last row", function()
     local run = system { I = 1, k = 1, walls = { upper = 0.1, stiffness = 20 } }:simulate { velocity0 = 1, t_end = 0.3, dt = 0.1 }
     local e = closes(run)
     near(e.finish.spring, e.spring[#run], 1e-13)

@@ -12,7 +12,7 @@ local function harmless(text, what)
     end
 end
 
-test("a run that was read, its card, its story and the errors about it", function()
+test("a loaded run with names that are control sequences, its card, story and errors are harmless", function()
     write(file, "# -- dinal 1\n" .. read(file))
     local run = load(file)
     equal(#run.names, 2)
@@ -28,7 +28,7 @@ test("a run that was read, its card, its story and the errors about it", functio
     end
 end)
 
-test("data that were read, their rows, tables and errors", function()
+test("loaded data with such names, their rows, tables and errors are harmless", function()
     local d = load(words)
     equal(#d, 2)
     harmless(tostring(d), "tostring")
@@ -39,7 +39,7 @@ test("data that were read, their rows, tables and errors", function()
     harmless(message, "field")
 end)
 
-test("events that a user has named so, and who takes the name itself gets it as it is", function()
+test("events named so by the user are harmless, and their raw names can be read", function()
     local run = system{ I = 1, k = 1 }:simulate{ theta0 = 1, t_end = 3, dt = 1,
         events = { { when = function(t) return t - 1 end, name = "limit" .. evil } } }
     harmless(tostring(run.events), "events")

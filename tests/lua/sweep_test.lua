@@ -42,7 +42,7 @@ test("the result is the same to the last bit for any number of workers", functio
     for workers = 2, 8, 3 do equal(map(workers), one) end
 end)
 
-test("math.random differs from point to point and from seed to seed, and is the same each time", function()
+test("math.random differs from point to point and from seed to seed, and is reproducible", function()
     local function draws(seed)
         return sweep { over = { x = vector.linspace(1, 100, 100) }, seed = seed, run = function() return { u = math.random() } end }.u
     end
@@ -55,7 +55,7 @@ test("math.random differs from point to point and from seed to seed, and is the 
     assert(bits(data { u = draws(1) }) ~= bits(data { u = u }))
 end)
 
-test("what a point does not return is nan, true and false are 1 and 0", function()
+test("a missing result is nan, true and false are 1 and 0", function()
     local d = sweep { over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x > 1 and p.x or nil, big = p.x > 2 } end }
     assert(d.y[1] ~= d.y[1])
     equal(d.y[3], 3.0)
@@ -87,7 +87,7 @@ test("functions that call themselves and each other are carried", function()
     equal(at_one_point(function() return { y = factorial(5) + (even(10) and 1 or 0) } end), 121.0)
 end)
 
-test("globals that a function names are carried, also those that the functions within it name", function()
+test("globals that a function names are carried, also those named by functions within it", function()
     factor, helper = 3, function(x) return factor * x end
     equal(at_one_point(function(p) return { y = (function() return helper(p.x) end)() } end), 21.0)
     equal(at_one_point(function(p) return { y = _G.factor + _ENV["factor"] } end), 6.0)
@@ -97,7 +97,7 @@ test("globals that a function names are carried, also those that the functions w
     factor, helper, record = nil, nil, nil
 end)
 
-test("a global with a new meaning keeps it, and a library with more in it, too", function()
+test("a redefined global and an extended library are carried", function()
     local own = print
     print = function() return 5 end
     function string.twice(s) return s .. s end
@@ -118,7 +118,7 @@ test("a function with more constants than instructions can name finds its global
     far_away = nil
 end)
 
-test("standard functions and tables are found again by their names", function()
+test("standard functions and tables are found by their names", function()
     local sin, library, write, print_it = math.sin, string, io.write, print
     equal(at_one_point(function()
         return { y = (sin == math.sin and library == string and write == io.write and print_it == print
@@ -126,7 +126,7 @@ test("standard functions and tables are found again by their names", function()
     end), 1.0)
 end)
 
-test("tables keep their metatables, what is in them twice, and circles", function()
+test("tables keep their metatables, shared parts and cycles", function()
     local class = { get = function(self) return self.value end }
     class.__index = class
     local object = setmetatable({ value = 9 }, class)
@@ -183,7 +183,7 @@ test("a sweep within a sweep works", function()
     equal(tostring(d.total), "vector{ 3, 6 }")
 end)
 
-test("what cannot be carried is refused with the way to it", function()
+test("a value that cannot be carried is refused with the path to it", function()
     local run = nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.5 }
     local settings = { last = { run } }
     local function helper() return settings end
@@ -203,7 +203,7 @@ test("what cannot be carried is refused with the way to it", function()
     file:close()
 end)
 
-test("what is nested without end is refused in a short sentence", function()
+test("endless nesting is refused in a short sentence", function()
     local nested, chain = {}, function() return 1 end
     for _ = 1, 100000 do  -- each level once took some of the stack of C++
         nested = { nested }
@@ -234,7 +234,7 @@ test("results may be strings, in files too", function()
     end
 end)
 
-test("points gives a part of the result", function()
+test("points selects a part of the grid", function()
     local function swept(points)
         return sweep { over = { a = { 1, 2, 3 }, b = { 10, 20 } }, points = points, run = function(p)
             if p.a == 2 then error("no", 0) end
@@ -255,7 +255,7 @@ end)
 
 -- ---- what goes wrong
 
-test("a point that fails keeps its message, the others go on, and the map says so", function()
+test("a point that fails keeps its message, the others continue, and the map says so", function()
     local d = sweep { over = { x = { 1, 2, 3, 4, 5 } }, run = function(p)
         if p.x == 2 then error("two is bad", 0) end
         if p.x == 3 then return p.x end
@@ -308,7 +308,7 @@ test("workers do not draw, save, show progress or end the program", function()
     equal(at_one_point(function() return { y = #tostring(plot { { v, v }, show = false }) > 100 } end), 1.0)
 end)
 
-test("what is wrong with the call is told at the user's line", function()
+test("mistakes in the call are errors at the user's line", function()
     local function run() return {} end
     refuses(sweep, {
         { { over = { x = {} }, run = run }, "sweep: x has no values" },
@@ -333,7 +333,7 @@ test("what is wrong with the call is told at the user's line", function()
         "1e+10 points are more")
 end)
 
-test("a point that takes longer than max_time is given up, in Lua or in a run, and the others go on", function()
+test("a point that takes longer than max_time is abandoned, in Lua or in a run, and the others continue", function()
     local d = sweep { over = { x = { 1, 2, 3, 4 } }, workers = 2, max_time = 0.15, run = function(p)
         if p.x == 2 then while true do pcall(function() while true do end end) end end
         if p.x == 3 then nondimensional {}:simulate { M = function(t) return math.sin(t) end, t_end = 1e9, times = {} } end
@@ -346,7 +346,7 @@ test("a point that takes longer than max_time is given up, in Lua or in a run, a
     end
 end)
 
-test("a part of a sweep has the random numbers of the whole, and a bifurcation begins where its runs do", function()
+test("a part of a sweep has the random numbers of the whole, and a bifurcation begins as its runs do", function()
     local function y(points)
         return sweep { over = { x = vector.range(1, 6) }, points = points, run = function() return { y = math.random() } end }.y
     end
@@ -358,7 +358,7 @@ test("a part of a sweep has the random numbers of the whole, and a bifurcation b
     near(b.theta, sys:simulate { M = M, t_start = 0.7, theta0 = 0.3, times = { 4.7, 6.7, 8.7 } }.theta, 1e-12)
 end)
 
-test("a file is of one sweep: another option of a controller in its function is another sweep", function()
+test("a file belongs to one sweep: another option of a controller in its function is another sweep", function()
     local function f() return 0 end
     local function start(x) return function() return { x = x } end end
     local function sampled(o) return excitation.sampled(f, merged({ every = 0.1, start = start(0) }, o)) end

@@ -1,6 +1,6 @@
 dofile "tests/lua/support.lua"
 
-test("a system shows what it was given; C and Rd are zero and Re is Rd unless given", function()
+test("a system shows its given values; C and Rd are zero and Re is Rd unless given", function()
     local function shown(sys) return table.concat({ sys.I, sys.k, sys.C, sys.Rd, sys.Re }, " ") end
     equal(shown(system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }), "2.0 8.0 0.5 1.0 1.5")
     equal(shown(system { I = 1, k = 1 }), "1.0 1.0 0.0 0.0 0.0")
@@ -15,7 +15,7 @@ test("the regime is undamped, underdamped, critical or overdamped, and only a sw
     end
 end)
 
-test("the nondimensional system has k = 1, T0 = 1, and the ratios it was given", function()
+test("the nondimensional system has k = 1, T0 = 1, and the given ratios", function()
     local nd = nondimensional { zeta = 0.119, friction_ratio = 0.418, breakaway_ratio = 0.45 }
     equal(nd.k, 1.0)
     equal(nd.T0, 1.0)
@@ -84,7 +84,7 @@ test("dinal is a table whose members are globals, and a user may overwrite these
     assert(ok, problem)
 end)
 
-test("a spring of -0 is none, friction beyond all numbers is told", function()
+test("a spring of -0 counts as none, and infinite friction is an error", function()
     local block = system{ I = 1, k = -0.0, Rd = 0.5 }
     equal(tostring(block.k), "0.0")
     local r = block:simulate{ velocity0 = 1, t_end = 3, dt = 1 }  -- it stops at v^2/(2 Rd) = 1
@@ -96,7 +96,7 @@ test("a spring of -0 is none, friction beyond all numbers is told", function()
     assert(nondimensional{ friction_ratio = 1e300 }:simulate{ velocity0 = 6, t_end = 3, dt = 1 }.theta:abs() < 1e-12)
 end)
 
-test("a constant normal load makes an ordinary system with friction scaled", function()
+test("a constant normal load makes an ordinary system with scaled friction", function()
     local sys, same = system { I = 1, k = 4, C = 0.1, Rd = 0.25, Re = 0.5, normal = 2 }, system { I = 1, k = 4, C = 0.1, Rd = 0.5, Re = 1 }
     equal(sys.dead_zone, same.dead_zone)
     equal(sys.Rd, 0.25)
@@ -119,7 +119,7 @@ test("a constant normal load makes an ordinary system with friction scaled", fun
     near((a.theta - b.theta):abs():max(), 0, 1e-12)
 end)
 
-test("a system whose friction varies has the fields that need no constant law", function()
+test("a system with varying friction has the fields that need no constant law", function()
     local Rd = function(t) return 1 + t end
     local sys = system { I = 1, k = 4, C = 1, Rd = Rd }
     equal(sys.k, 4.0)

@@ -22,7 +22,7 @@ local calls = {
 local two_results = { free_response = true, identify = true, linearised = true, den_hartog = true,
     den_hartog_fundamental = true }
 
-test("theory is in the table dinal and a global, and all of its functions are tried here", function()
+test("theory is in the table dinal and a global, and all of its functions are tested here", function()
     equal(theory, dinal.theory)
     for name in pairs(theory) do
         assert(calls[name] or name == "extremes", name)
@@ -47,7 +47,7 @@ test("numbers give numbers, and a vector or a table in any option gives vectors 
     end
 end)
 
-test("where a closed form does not hold there is nil, and nan among others", function()
+test("where a closed form does not hold the result is nil, and nan in a vector", function()
     equal(theory.den_hartog { r = 2, friction_ratio = 0.6 }, nil)
     equal(select("#", theory.den_hartog { r = 2, friction_ratio = 0.6 }), 2)
     local A, lag = theory.den_hartog { r = { 2, 2 }, friction_ratio = { 0.5, 0.6 } }
@@ -61,7 +61,7 @@ test("where a closed form does not hold there is nil, and nan among others", fun
     equal(theory.time_to_rest { system = nondimensional {}, theta0 = 1 }, math.huge)
 end)
 
-test("a nan in a vector stays where it is", function()
+test("a nan in a vector stays in its place", function()
     local A = theory.den_hartog { r = { 0.5, 0.9, 1.3 }, friction_ratio = 0.4 }
     assert(A[1] ~= A[1])
     local zeta = theory.equivalent_zeta { friction_ratio = 0.4, r = { 0.5, 0.9, 1.3 }, magnification = A }
@@ -76,7 +76,7 @@ test("a free response is known before t = 0 as well", function()
     near(theory.free_response { system = system { I = 1, k = 4, C = 4 }, theta0 = 1, t = 1 }, 3 * math.exp(-2), 1e-15)
 end)
 
-test("extremes stop at rest, at count, or ask for it", function()
+test("extremes end at rest or at count, which is required otherwise", function()
     local sys = nondimensional { friction_ratio = 0.1 }
     equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
     equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)

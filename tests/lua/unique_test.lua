@@ -3,7 +3,7 @@ dofile "tests/lua/support.lua"
 
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
 
-test("without any loss, at a part of the natural period, there are others that come back after some periods", function()
+test("without losses, at a fraction of the natural period, other motions exist that repeat after some periods", function()
     local free = nondimensional{}
     for _, r in ipairs{ 2, 1.5, 0.75, 5 } do
         local s = free:steady{ M = excitation.harmonic{ frequency = r } }
@@ -15,7 +15,7 @@ test("without any loss, at a part of the natural period, there are others that c
     equal(nondimensional{ zeta = 0.01 }:steady{ M = excitation.harmonic{ frequency = 2 } }.unique, "proven")
 end)
 
-test("a motion between bounds does not grow, and one of a family is not called the only one", function()
+test("a bounded motion does not grow, and one of a family is not called the only one", function()
     local wells = system{ I = 1, k = 0, C = 0.25, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
     local s = wells:steady{ M = excitation.harmonic{ amplitude = 0.34, omega = 1 }, theta0 = 1 }
     assert(s.status ~= "grows", s.status)
@@ -55,7 +55,7 @@ test("unique is true only where it is proven", function()
     assert(system{ I = 1, k = 0, Rd = 1 }:steady{ M = 0.5 * load }.unique ~= "proven")
 end)
 
-test("other starts reach motions far larger than the one found, and the adhesion beside it", function()
+test("other starts find motions far larger than the one found, and adhesion", function()
     -- Both motions of each are found from starts given by hand.
     for i, case in ipairs{ { 0.03, 0.5, 0.25, 1.8, 5 }, { 0.05, 0.1, 0.4, 1.3, 5 }, { 0.03, 2, 0.2, 1.7, 3 } } do
         local C, cubic, amplitude, omega, far = table.unpack(case)

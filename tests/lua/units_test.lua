@@ -9,7 +9,7 @@ local function asked(more)
 end
 local run = block:simulate(asked())
 
-test("axes have the units of the system, and what the call says goes before", function()
+test("axes have the units of the system, unless the call gives a label", function()
     has(picture(run, { y = "theta" }), "theta, m", "t, s")
     has(picture(run, { y = "velocity" }), "theta', m/s")
     has(picture(run, { y = "M" }), "M, N")
@@ -20,7 +20,7 @@ test("axes have the units of the system, and what the call says goes before", fu
     has(picture(plain:simulate(asked()), { y = "velocity" }), "theta', rad/time")
 end)
 
-test("a run may have its own, in place of those of the system", function()
+test("a run may have its own units, instead of those of the system", function()
     local own = block:simulate(asked{ units = { theta = "mm" } })
     has(picture(own, { y = "velocity" }), "theta', mm/time")
     equal(own.units.theta, "mm")
@@ -30,14 +30,14 @@ test("a run may have its own, in place of those of the system", function()
     equal(own:continue{ t_end = 6 }.units.theta, "mm")
 end)
 
-test("no number depends on them", function()
+test("no number depends on the units", function()
     local other = plain:simulate(asked())
     equal(run.theta, other.theta)
     equal(#run.events, #other.events)
     equal(block.T0, plain.T0)
 end)
 
-test("sys:with keeps them, changes them and takes them away", function()
+test("sys:with keeps units, changes them and removes them", function()
     equal(block:with{ Rd = 0.2 }.units.M, "N")
     equal(block:with{ units = { theta = "cm" } }.units.M, nil)
     equal(tostring(block:with{ units = {} }), tostring(plain))
@@ -46,7 +46,7 @@ test("sys:with keeps them, changes them and takes them away", function()
     equal(plain.units.t, nil)
 end)
 
-test("a system is written down with them, whatever else it has", function()
+test("the text of a system includes its units", function()
     has_not(plain, "units")
     has(block, 'units = { theta = "m", t = "s", M = "N" } }')
     local systems = { block, system{ I = 1, k = 4, units = { t = "s" } },
@@ -59,14 +59,14 @@ test("a system is written down with them, whatever else it has", function()
     end
 end)
 
-test("energies and steady motions have those that follow from them", function()
+test("energies and steady motions have derived units", function()
     has(run:energy(), "energy in N m, t 0 … 5 s:")
     has(plain:with{ units = { M = "N m" } }:simulate(asked()):energy(), "energy in N m, t 0 … 5:")
     has_not(plain:simulate(asked()):energy(), "energy in")
     has(block:steady{ M = excitation.harmonic{ amplitude = 2, omega = 1 } }, "period 6.28319 s, amplitude", " m, ")
 end)
 
-test("the story says them once, and the time in them", function()
+test("the story states the units once, and the time in them", function()
     says(run, "Units: theta in m, t in s, M in N.")
     has(block:simulate{ theta0 = 0.04, t_end = 4, dt = 1 }:explain(), "Units:")
     local stops = block:with{ Re = 1.5, Rd = 1 }:simulate(asked{ theta0 = 0 })
@@ -74,7 +74,7 @@ test("the story says them once, and the time in them", function()
     has_not(plain:simulate(asked()):explain(), "Units:")
 end)
 
-test("columns of tables have them, and keep them when rows are picked; their names stay", function()
+test("columns of tables have units, and keep them when rows are selected; their names are unchanged", function()
     local events = run.events
     has(events, "t, s", "theta, m", "M, N")
     has(events:markdown(), "| t, s | kind | theta, m | M, N |")
@@ -88,7 +88,7 @@ test("columns of tables have them, and keep them when rows are picked; their nam
     equal(reloaded(events).names[3], "theta")
 end)
 
-test("a response has them at its axes and in its jumps", function()
+test("a response has units at its axes and in its jumps", function()
     local curve = block:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 5) }, between = true }
     has(curve, "frequency, 1/s", "amplitude, m")
     has(curve:plot{ y = "amplitude", width = 60, ascii = true, show = false }, "frequency, 1/s", "amplitude, m")
@@ -96,7 +96,7 @@ test("a response has them at its axes and in its jumps", function()
     has(block:response{ frequency = 0.3, over = { amplitude = vector.linspace(1, 2, 3) }, between = true }, "M0, N")
 end)
 
-test("a fit has those of its record, and none of a torque that the record does not tell", function()
+test("a fit has the units of its record, and no unit of torque if the record has none", function()
     local function decay(sys) return sys:simulate{ theta0 = 1, t_end = 8, dt = 0.05 } end
     local fit, known = identify{ data = decay(block) }, identify{ data = decay(block), I = 1 }
     assert(tostring(fit):find "omega0 +2 .* rad/s\n" and tostring(fit):find "theta0 +1 .* m\n", tostring(fit))
@@ -108,7 +108,7 @@ test("a fit has those of its record, and none of a torque that the record does n
     has_not(identify{ data = decay(plain) }, "rad")
 end)
 
-test("a report has them in its tables", function()
+test("a report has units in its tables", function()
     local file = temporary ".html"
     local page = report{ title = "units" }
     page:table(run.events)
@@ -116,7 +116,7 @@ test("a report has them in its tables", function()
     has(read(file), "<th>t, s</th>", "<th>theta, m</th>", "<th>kind</th>")
 end)
 
-test("a file keeps them, for who reads it and for the run that is read from it", function()
+test("a file keeps the units, for its readers and for the loaded run", function()
     local old, file = reloaded(run)
     has(read(file), "# -- units: theta in m, t in s, M in N\n", 'units = { theta = "m", t = "s", M = "N" }',
         "\nt,theta,velocity,M,")
@@ -126,7 +126,7 @@ test("a file keeps them, for who reads it and for the run that is read from it",
     equal(reloaded(old).units.theta, "m")
 end)
 
-test("what a stranger's file says of units is taken when it is a word", function()
+test("the units in a stranger's file are accepted if they are words", function()
     local file = temporary ".csv"
     for said, theta in pairs{ ["theta in m\27[31m"] = "rad", ["theta in in"] = "in", ["theta in " .. ("m"):rep(99)] = "rad",
         ["nonsense"] = "", ["t in s"] = "" } do
@@ -135,13 +135,13 @@ test("what a stranger's file says of units is taken when it is a word", function
     end
 end)
 
-test("a nondimensional system has the units of its numbers, unless others are given", function()
+test("a nondimensional system has units such as Mc/k and T0, unless others are given", function()
     local units = nondimensional {}.units
     equal(units.theta .. " " .. units.t .. " " .. units.M, "Mc/k T0 Mc")
     equal(nondimensional { units = { theta = "rad" } }.units.t, nil)
 end)
 
-test("wrong units are said", function()
+test("wrong units are errors", function()
     refuses(system, {
         { { I = 1, k = 4, units = "m" }, 'units must be a table such as { theta = "m"' },
         { { I = 1, k = 4, units = { theta = 1 } }, "theta must be a string" },

@@ -78,7 +78,7 @@ test("a narrow smooth pulse is found in every kind of function", function()
     end
 end)
 
-test("what is sampled in a delayed excitation or a relay is told as the gap, and what is sampled at instants only is not", function()
+test("a sampled part of a delayed excitation or a relay is reported as the gap, a function sampled at instants is not", function()
     local function gap(M) return system(free):simulate { M = M, velocity0 = 1, t_end = 1, dt = .5 }.gap end
     local function narrow(t, theta, v) return exp(-((theta - .5) / 1e-6) ^ 2) end
     assert(gap(excitation.delayed(function(t, theta, v) return theta > .5 and theta < .6 and 1 or 0 end, { by = .01 })) > 0)
@@ -111,7 +111,7 @@ test("a small narrow pulse beside a sine is found", function()
     end
 end)
 
-test("a narrow pulse of the belt, and of what tells an event, is found", function()
+test("a narrow pulse of the belt, and of an event's function, is found", function()
     for _ = 1, 24 do
         local p, w = lot(.3, 1.5), 10 ^ lot(-5, -2)
         local got = glide({ I = 1, k = 0, Rd = .1 }, { belt = function(t) return 3 * exp(-((t - p) / w) ^ 2) end })
@@ -140,7 +140,7 @@ test("conditions of springs and events are located, however narrow", function()
     end
 end)
 
-test("a condition on something narrow is found", function()
+test("a condition that depends on something narrow is found", function()
     for _, d in ipairs { 1e-2, 1e-4, 1e-6 } do
         local run = system(free):simulate { velocity0 = 1, t_end = 2, dt = .1, M = function(t, theta, v)
             if exp(-((theta - .3) / d) ^ 2) > .5 then return 1 / d end
@@ -152,7 +152,7 @@ test("a condition on something narrow is found", function()
     end
 end)
 
-test("a pulse before a condition is found where the formula has no value beyond it", function()
+test("a pulse right before a condition is found although its formula overflows beyond it", function()
     for _, w in ipairs { 1e-3, 1e-4, 3e-5, 1e-6 } do
         for _, theta in ipairs { .7, 1.03447 } do
             -- exp(2 (x - p)/w) overflows behind p, and the function is 0 there.
@@ -168,7 +168,7 @@ test("a pulse before a condition is found where the formula has no value beyond 
     end
 end)
 
-test("a push as short as a ten millionth of the way changes the energy by its work", function()
+test("a very short push, over a ten millionth of the way, changes the energy by its work", function()
     local function left_over(k, a, w, area, kind)
         local b = a + w
         local push = area / (b - a)
@@ -195,7 +195,7 @@ test("a push as short as a ten millionth of the way changes the energy by its wo
     near(left_over(.5, .3667, 1.3e-7, 7.4, "M"), 0, 5e-8)
 end)
 
-test("a rise from next to nothing to a peak is no native term", function()
+test("a rise from almost zero to a peak is not a native term", function()
     local swings = system { I = 1, k = 1 }
     local function after(M) return select(2, swings:simulate { M = M, t_end = 3, dt = 1 }:at(3)) end
     for _, w in ipairs { 1e-2, 1e-3, 1e-4, 1e-5 } do
@@ -219,7 +219,7 @@ test("a push in the spring of a link changes the energy by its work", function()
     end
 end)
 
-test("a window of the velocity in which a formula stands that has no bounds beyond it", function()
+test("a pulse in a velocity window is followed although its formula has no bounds outside", function()
     local S = system { I = 1, k = 17, C = .1 }
     local function after(M) return select(2, S:simulate { velocity0 = 6.8, t_end = .3, dt = 1, M = M }:at(.3)) end
     local alone = after()
@@ -231,7 +231,7 @@ test("a window of the velocity in which a formula stands that has no bounds beyo
     end
 end)
 
-test("what could not be proven is told as the gap", function()
+test("an unproven function is reported as the gap", function()
     local S = system { I = 1, k = 4, C = .2 }
     local function gap(M, o)
         o = o or {}

@@ -150,7 +150,7 @@ do
     raises(function() vector.range(0, 1e12) end, "numbers are more than")
 end
 
-test("v[v > 0] picks the elements for which a comparison holds", function()
+test("v[v > 0] selects the elements for which a comparison holds", function()
   local v, w = vector{ -1, 2, 3, -7 }, vector{ 4, 5, 6, 7 }
   local function same(picked, ...) equal(tostring(picked), tostring(vector{ ... })) end
   same(v[v > 0], 2, 3)

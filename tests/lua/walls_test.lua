@@ -2,7 +2,7 @@ dofile "tests/lua/support.lua"
 
 local walls = { lower = -0.8, upper = 0.8, restitution = 0.7 }
 
-test("walls are an option of a system, and the text of the system makes them again", function()
+test("walls are an option of a system, and the system's text reproduces them", function()
     local sys = system { I = 1, k = 0, walls = walls }
     equal(tostring(sys), "system{ I = 1, k = 0, walls = { lower = -0.8, upper = 0.8, restitution = 0.7 } }")
     equal(tostring(load("return " .. tostring(sys))()), tostring(sys))
@@ -16,7 +16,7 @@ test("walls are an option of a system, and the text of the system makes them aga
     equal(sys:with { walls = { lower = 0 } }.walls.restitution, 1.0)
 end)
 
-test("impacts are events: where, when, and with which velocity", function()
+test("impacts are events with time, place and velocity", function()
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.002 } } do
         local run = system { I = 1, k = 0, walls = walls }:simulate { velocity0 = 2, t_end = 3.5, dt = 0.1, integrator = method }
         equal(#run.events, 3)
@@ -32,7 +32,7 @@ test("impacts are events: where, when, and with which velocity", function()
     end
 end)
 
-test("a ball comes to rest in finite time; its energy adds up; the file repeats it", function()
+test("a bouncing ball comes to rest in finite time; its energy adds up; the file repeats it", function()
     local ball = system { I = 1, k = 0, walls = { lower = 0, restitution = 0.7 } }
     local run = ball:simulate { M = -2, theta0 = 1, t_end = 10, dt = 0.5 }
     equal(run.outcome, "at rest")
@@ -53,14 +53,14 @@ test("a ball comes to rest in finite time; its energy adds up; the file repeats 
     has(picture, "impact")
 end)
 
-test("bounces are told until those that are left take 1e-7 of the motion so far", function()
+test("bounces are reported until the remaining ones last 1e-7 of the motion so far", function()
     local run = system { I = 1, k = 0, walls = { lower = 0, restitution = 0.9 } }:simulate { M = -2, theta0 = 1, t_end = 60, dt = 60 }
     -- It falls for 1; the n-th bounce takes 2*0.9^n, what is left with it 20*0.9^n, all of it 1 + 18.
     equal(#of_kind(run, "impact"), math.ceil(math.log(19e-7 / 20, 0.9)))
     near(run.events[#run.events].t, 19, 1e-10)
 end)
 
-test("a steady motion between walls, and a response", function()
+test("a steady motion between walls is found, and its response", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.05, walls = { lower = -0.5, upper = 0.5, restitution = 0.6 } }
     local s = sys:steady { M = excitation.harmonic { amplitude = 0.6, omega = 1.2 } }
     equal(s.status, "steady")
@@ -101,7 +101,7 @@ test("between walls nothing grows, and a mass that rests against one is stable",
     raises_here(function() system { I = 1, k = 1, walls = { upper = 1 } }:steady { theta0 = 2 } end, "theta0 = 2 is beyond the wall at upper = 1")
 end)
 
-test("what is wrong with walls is one sentence with the name of the option", function()
+test("each mistake in walls is one sentence with the name of the option", function()
     refuses(function(walls) system { I = 1, k = 1, walls = walls } end, {
         { 3, "system: walls must be a table such as { lower = -0.8", "got 3" },
         { { lower = 1, upper = 0 }, "walls: lower = 1 must be less than upper = 0" },
@@ -115,7 +115,7 @@ test("what is wrong with walls is one sentence with the name of the option", fun
     raises_here(function() sys:simulate { theta0 = 1, t_end = 1, dt = 1 } end, "sys:simulate: theta0 = 1 is beyond the wall at upper = 0.8")
 end)
 
-test("a mass that comes to a wall at velocity 0 does not hit it, whatever rounding makes of its way", function()
+test("a mass that reaches a wall at velocity 0 does not hit it, despite rounding", function()
     -- From rest at the wall under a constant load away from it: p/k (1 - cos w t), which touches the wall once a period.
     for i = 1, 40 do
         local side, k, p = i % 2 == 0 and 1 or -1, 1 + i % 7, 0.3 + 0.11*i
@@ -131,7 +131,7 @@ test("a mass that comes to a wall at velocity 0 does not hit it, whatever roundi
     end
 end)
 
-test("a mass that leans on a wall has no acceleration", function()
+test("a mass that leans on a wall has zero acceleration", function()
     local run = system { I = 1, k = 1, walls = { upper = 1, restitution = 0 } }:simulate { M = 2, t_end = 4, dt = 0.5 }
     equal(run.acceleration[#run], 0.0)
 end)
@@ -154,7 +154,7 @@ test("a body that leaned on another goes on when that one stops dead at a wall",
     end
 end)
 
-test("rk4 makes the same steps where walls are out of reach as without any, and knows their energy", function()
+test("rk4 makes the same steps with walls out of reach as without walls, and has its energy", function()
     local far = { lower = -50, upper = 50 }
     local cases = {
         { { C = 0.1, Rd = 0.3, Re = 0.5 }, excitation.harmonic { amplitude = 1.2, omega = 1.3 } },

@@ -20,7 +20,7 @@ struct Bristle final : BendingLaw {
 
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double greatest() const { return breakaway.value_or(kinetic); }
-    /// The torque of a steady slip without its viscous part.
+    /// The torque of steady slip without its viscous part.
     [[nodiscard]] double steady(double v) const {
         const double x = v / speed;
         return kinetic + (greatest() - kinetic) * std::exp(-x * x);

@@ -17,7 +17,7 @@ struct Tabulated {
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v >= speed.back()) return torque.back();
-        const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // the first line goes on below 0
+        const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // the first line extends below 0
         return range(static_cast<std::size_t>(above - speed.begin()) - 1).at(v);
     }
     [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }

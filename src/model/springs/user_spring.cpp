@@ -14,7 +14,7 @@ constexpr std::array<double, 4> inner_nodes = {0, 0.4688487934707142138037718819
                                                1};
 constexpr std::array<double, 4> inner_weights = {0.487619047619047619047619047619, 0.43174538120986262341787102228,
                                                  0.27682604736156594801070040629, 0.047619047619047619047619047619};
-/// Enough halvings for a kink: the remaining error is negligible.
+/// The limit of bisections around a kink; the remaining error is negligible.
 constexpr int most_halvings = 48;
 
 double over(terms::UserFunction& torque, double a, double b) {
@@ -27,7 +27,7 @@ double over(terms::UserFunction& torque, double a, double b) {
     return half * sum;
 }
 
-/// Compares the whole with both halves, and halves again if they differ by more than `allowed`.
+/// Adaptive quadrature: compares the whole with its two halves and bisects again if they differ by more than `allowed`.
 double refined_over(terms::UserFunction& torque, double a, double b, double whole, double allowed, int halvings) {
     const double middle = a + (b - a) / 2;
     const double left = over(torque, a, middle), right = over(torque, middle, b);

@@ -17,7 +17,7 @@ struct UserSpring {
     /// By quadrature to rounding; NaN if the function is too rough or fails.
     [[nodiscard]] double energy(double theta) const;
     [[nodiscard]] static std::optional<text::Error> complaint() { return std::nullopt; }
-    /// Unknown, so false.
+    /// The symmetry of the function is unknown, so false.
     [[nodiscard]] static bool is_odd() { return false; }
     [[nodiscard]] bool may_go_on() const { return function->may_go_on(); }
     /// The function's source is known to Lua only.

@@ -126,7 +126,7 @@ private:
         const std::array<double, 4> c = powers(now);
         return c[0] + d * (c[1] + d * (c[2] + d * c[3]));
     }
-    /// Computes a spline's slopes and drops a last point that repeats the first.
+    /// Computes the slopes of a spline and drops a last point that repeats the first.
     static std::shared_ptr<const Samples> prepared(std::shared_ptr<const Samples> points);
     /// A bound of |M|: a spline lies within the hull of its control points.
     [[nodiscard]] double greatest() const;

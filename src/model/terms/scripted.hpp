@@ -54,8 +54,8 @@ public:
     virtual double value_with(double t, const State& state, std::span<const double> /*states*/) {
         return value(t, state);
     }
-    /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns how many are.
-    // Virtual: a block enters the user's language only once.
+    /// out[i] = value(times[i]) in this order, up to and including the first that is not finite; returns the number of
+    /// finite values. Virtual: a block enters the user's language only once.
     virtual std::size_t fill(std::span<const double> times, std::span<double> out) {
         for (std::size_t i = 0; i < times.size(); ++i) {
             out[i] = value(times[i], State{});
@@ -69,8 +69,7 @@ public:
     virtual Formula* read() { return nullptr; }
     /// The first known jump or kink after t; `never` if unknown.
     virtual double next_break(double /*t*/) { return never; }
-    /// The latest end of a stretch from t on within which the function hides nothing between samples; `never` if
-    /// unknown.
+    /// The latest end of an interval from t on in which the function has no detail between samples; `never` if unknown.
     virtual double told_until(double /*t*/) { return never; }
     /// Returns whether its conditions on theta, velocity and states are known.
     virtual bool has_pieces() { return false; }
@@ -79,13 +78,13 @@ public:
                         std::uint64_t /*again*/) {
         piece = {};
     }
-    /// The value with the decisions of the piece, also beyond it. `margins`, if given, receives one number for each
+    /// The value with the decisions of the piece, also beyond it. `margins`, if not null, receives the distance to each
     /// condition, positive inside the piece.
     virtual double value_on(const Piece& /*piece*/, double t, const State& state, std::span<const double> states,
                             std::vector<double>* /*margins*/) {
         return value_with(t, state, states);
     }
-    /// After a failure: returns whether it may be evaluated at other times. The owner keeps the failure.
+    /// Returns, after a failure, whether the function may be evaluated at other times. The owner keeps the failure.
     virtual bool may_go_on() { return true; }
     /// Drops a failure that occurred only in a rejected trial step.
     virtual void forget_failure() {}
@@ -144,7 +143,7 @@ struct Scripted {
     [[nodiscard]] Detail detail() const { return no_detail; }
     void delay_by(double d) { delay += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    /// Removes a corner named twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.
+    /// Removes a break listed twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.
     void drop_repeated_corner();
 };
 

@@ -10,7 +10,7 @@ namespace dinal::model::terms {
 /// (not-a-knot, C. de Boor); three points give a parabola, two a straight line.
 std::vector<double> spline_slopes(std::span<const double> t, std::span<const double> values);
 
-/// The same for a curve of this period, which is longer than the span of the times.
+/// The slopes of a periodic spline. The period must exceed the span of the times.
 std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<const double> values, double period);
 
 }  // namespace dinal::model::terms

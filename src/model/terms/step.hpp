@@ -27,7 +27,7 @@ struct Step {
 inline constexpr text::Option step_options[] = {
     {.name = "amplitude",
      .unit = rows::torque,
-     .meaning = "the torque from then on",
+     .meaning = "the torque from the time `at` on",
      .filled = text::fills<&Step::amplitude>},
     rows::at<Step>("the time of the step"),
 };

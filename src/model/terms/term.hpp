@@ -51,7 +51,7 @@ concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.value(x) } -> std::same_as<double>;
     /// The first time after x at which it or a derivative of it jumps; `never` if there is none.
     { term.next_break(x) } -> std::same_as<double>;
-    /// The time from which it is constant: -never if always, `never` if never. Ignores that its amplitude may be 0.
+    /// The time from which it is constant: -never if always, `never` if never. A zero amplitude is not considered.
     { term.constant_from() } -> std::same_as<double>;
     /// An upper bound of |value|; `never` if unknown.
     { term.most() } -> std::same_as<double>;
@@ -165,7 +165,7 @@ template <class T>
 void set_frequency(T& term, double frequency) {
     term.period = 1 / frequency;
 }
-/// Instead of the period in the row before.
+/// An alternative to the period in the previous row.
 template <class T>
 constexpr text::Option frequency() {
     return {.name = "frequency",

@@ -73,7 +73,7 @@ bool finite(const Loop& p) {
     return std::isfinite(p.U) && std::isfinite(p.V) && std::isfinite(p.Z);
 }
 
-/// The motion between the rows, from repeating the steps.
+/// The motion between the rows, computed by repeating steps.
 class Replay final : public Course {
 public:
     Replay(const Problem& problem, const Dinal1989& options, std::size_t steps)
@@ -112,7 +112,7 @@ OwnRule Dinal1989::own_rule() const {
             "the listing released it at"};
 }
 
-/// Limited to what the program of 1989 read: I, k, C, Rd, Re and Mc.
+/// Returns an error unless the system has only what the program of 1989 read: I, k, C, Rd, Re and Mc.
 std::optional<text::Error> Dinal1989::wrong_for(const model::Oscillator& system,
                                                 const model::Excitation& /*excitation*/) const {
     if (!system.has_spring()) {

@@ -7,10 +7,12 @@ namespace dinal::motion::dinal1989 {
 
 struct Dinal1989 {
     enum class Stop {
-        listing,  ///< stop if |v| <= |v' - v| with the velocity v of the step before, and the torque is within Re
-        text,     ///< stop if |v| < |v' - v| / 2, as in section 6 of the report
+        /// stop if |v| <= |v' - v|, where v is the previous step's velocity and v' the new one, and the torque is
+        /// within Re
+        listing,
+        text,  ///< stop if |v| < |v' - v| / 2, as in section 6 of the report
     };
-    double h = 0;  ///< not limited: its divergence is a result
+    double h = 0;  ///< not limited, because its divergence is a result
     Stop stop = Stop::listing;
     bool slip = false;  ///< whether stage 3 uses the wrong index, as chapter 6 of the report did
 

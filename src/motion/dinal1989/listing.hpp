@@ -81,7 +81,7 @@ public:
                               : increment(p.U, p.V, p.Z, Z_[2 * i], Z_[2 * i + 1]),
                       Z_[2 * i + 1]);
     }
-    /// The same without prepared samples.
+    /// One pass without prepared samples.
     [[nodiscard]] Loop step(const Loop& p) {
         if (!feedback_) {
             for (const int end : {0, 1}) {
@@ -91,7 +91,7 @@ public:
         return step(p, 0);
     }
 
-    /// Makes several passes at once while the stop rule keeps its verdict and the velocity its sign.
+    /// Makes several passes at once while the result of the stop rule and the sign of the velocity stay the same.
     std::size_t plain_steps(Loop& p, std::size_t i, std::size_t stop) const {
         const auto plain = [&](auto&& change) {
             double U = p.U, V = p.V, T = p.T, Z = p.Z;

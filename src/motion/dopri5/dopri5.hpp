@@ -25,7 +25,7 @@ inline constexpr Pair pair{
 };
 
 struct Dopri5 {
-    double tolerance = 0;  ///< of the error of a step, relative to the greatest velocity in it
+    double tolerance = 0;  ///< error of a step relative to the greatest velocity in it
 
     static const MethodText about;
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {

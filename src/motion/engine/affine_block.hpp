@@ -12,7 +12,7 @@
 
 namespace dinal::motion::engine {
 
-/// The steps of a run: step n begins at time(n).
+/// The fixed steps of a run: step n begins at time(n).
 struct StepTimes {
     StepTimes(const Window& of, double step);
     Window window;
@@ -22,20 +22,20 @@ struct StepTimes {
     [[nodiscard]] double time(std::size_t n) const {
         return n == count ? window.end : window.start + static_cast<double>(n) * h;
     }
-    /// Returns the step in which t lies, or which begins there.
+    /// Returns the index of the step that contains t or begins at t.
     [[nodiscard]] std::size_t at(double t) const;
 };
 
-/// The hold of friction on a mass that stands, from step to step of a load.
+/// Tests for successive steps whether friction holds a mass at rest.
 class Hold {
 public:
-    /// `held` is the torque of springs, M the load now.
+    /// `held` is the torque of the springs, M the load at the start.
     Hold(double forward, double backward, double held, double M)
         : middle_(held + (forward - backward) / 2),
           limit_((forward + backward) / 2 * (1 - 1e-9)),
           off_(std::fabs(M - middle_)) {}
-    /// Returns whether the load of the next step is well within the limits, also between its samples: a parabola
-    /// through three of them exceeds the highest by at most an eighth of their second difference; a quarter is safe.
+    /// Returns whether the load stays well within the limits during the next step. Between its samples a parabola
+    /// exceeds the highest one by at most an eighth of the second difference; a quarter leaves a margin.
     bool lasts(double M_middle, double M_end) {
         const double before = off_, halfway = std::fabs(M_middle - middle_);
         off_ = std::fabs(M_end - middle_);
@@ -47,18 +47,18 @@ private:
 };
 
 struct AffineBlock {
-    static constexpr std::size_t most = 128;  ///< steps
+    static constexpr std::size_t most = 128;  ///< steps per block
     template <std::size_t n>
     using Each = std::array<double, n>;
 
     AffineBlock(const AffineStep& affine, double inertia) : map(affine), inverse_inertia(1 / inertia) {}
-    /// Samples M for the steps n, n + 1, ... of a run. Returns the number of those with finite samples.
+    /// Samples M for `count` steps from step n of the run on. Returns the number of steps with finite samples.
     std::size_t sample(const model::Excitation& M, const StepTimes& steps, std::size_t n, std::size_t count);
-    /// Prepares the steps from i of the block on, which begin at y under this M and a constant friction. It is separate
-    /// from the chain of steps, so that it vectorises.
+    /// Prepares the steps of the block from step i on, which begin at y with load M_there and a constant friction. This
+    /// loop is separate from the recurrence, so that it vectorises.
     void begin(std::size_t i, std::size_t count, const model::State& y, double M_there, double friction);
-    /// Steps while the velocity certainly keeps its direction, from step i to before `stop`. Returns the first step in
-    /// which it changes sign, or dips towards zero and returns, as it may have crossed zero twice.
+    /// Makes the steps i to `stop` - 1 as long as the velocity certainly keeps its direction. Returns the first step in
+    /// which it changes sign, or approaches zero and recedes, as it may then have crossed zero twice.
     std::size_t step(std::size_t i, std::size_t stop, double direction);
     /// Returns the end of step i, in which the velocity may change sign.
     [[nodiscard]] model::State end_of(std::size_t i) const { return map(at(i), push_theta[i], push_velocity[i]); }
@@ -69,8 +69,8 @@ struct AffineBlock {
 
     AffineStep map;
     double inverse_inertia;
-    Each<2 * most> times{}, samples{};                   ///< in the middle and at the end of each step
-    Each<most + 1> M{}, forcing{}, theta{}, velocity{};  ///< at the beginning
+    Each<2 * most> times{}, samples{};                   ///< at the middle and end of each step
+    Each<most + 1> M{}, forcing{}, theta{}, velocity{};  ///< at the start of each step
     Each<most> push_theta{}, push_velocity{};
 };
 

@@ -9,7 +9,7 @@ namespace dinal::motion::engine {
 /// beginning, middle and end of the step, R = 1 + Z + Z^2/2 + Z^3/6 + Z^4/24 and Z = h [0 1; -k/I -C/I]
 /// (docs/theory.md). R - 1 is stored rather than R: its rounding is smaller by the factor h w0.
 struct AffineStep {
-    /// `stiffness` and `damping` by the inertia.
+    /// `stiffness` and `damping` are divided by the inertia.
     AffineStep(double stiffness, double damping, double step) : h(step), w(stiffness), c(damping) {
         // Horner: R - 1 = Z (1 + Z/2 (1 + Z/3 (1 + Z/4))), each product by [0 1; -w -c] h.
         double a11 = 1, a12 = 0, a21 = 0, a22 = 1;

@@ -1,4 +1,4 @@
-// The balance of a system at a moment: its torques, accelerations, and the torques that hold contacts.
+// The balance of a system at one moment: torques, accelerations, and the torques of sticking contacts.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,14 @@ namespace dinal::motion::engine {
 
 struct Balance {
     std::vector<double> loads, torques, accelerations, holding;
-    double blurred = 0;  ///< the possible error of torques because the slopes of belts are differences
+    double blurred = 0;  ///< possible error of the torques from the numerical slopes of belts
 };
 
-/// The loads of a stretch that are functions of the time alone, by their series, so that they are not evaluated for
-/// every row.
+/// Evaluates the time-only loads of a stretch by their series, so that they need not be evaluated for every row.
 class SampledLoads {
 public:
     SampledLoads(const Mechanics& mechanics, const Segment& segment) : mechanics_(mechanics), segment_(segment) {}
-    /// Returns none if the load is to be evaluated.
+    /// The load of the body at the point x; empty if the load has no series and must be evaluated.
     [[nodiscard]] std::optional<double> at(std::size_t body, double x);
 
 private:
@@ -29,26 +28,27 @@ private:
     std::vector<Series> series_;
 };
 
-/// Evaluates balances. It decides conditions at the present, and changes nothing else.
+/// Evaluates balances. Changes nothing except that conditions without a decision get one.
 class Balances {
 public:
     Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver);
-    /// Returns the inertia of all bodies.
+    /// The total inertia of all bodies.
     [[nodiscard]] double inertia() const { return inertia_; }
 
-    /// At the present, as contacts are about to move. Returns false if something is not finite; so do the others.
+    /// The balance at the present, with contacts about to slip as if they moved. Like the other functions it returns
+    /// false if a value is not finite.
     bool at_present(const Now& now, const Frame& frame, const Segment& last, Balance& result) {
         const std::vector<double>& departing = now.departing(mechanics_.system(), departing_);
         return at_present({now.t.hi, now.side(), departing}, now, now.mode, frame, last, result);
     }
-    /// At a moment of the present, in a mode.
+    /// The balance at the moment `at` and in `mode`, with the other data of the present.
     bool at_present(const Moment& at, const Now& now, const Mode& mode, const Frame& frame, const Segment& last,
                     Balance& result);
-    /// At the place x of a stretch, with sampled loads if they are given.
+    /// The balance at the point x of a stretch; `sampled`, if given, supplies its loads.
     bool on_stretch(const Segment& segment, double x, const Moment& at, const Mode& mode, const Frame& frame,
                     Balance& result, SampledLoads* sampled = nullptr);
 
-    /// Returns whether some load depends on the motion.
+    /// Returns whether any load depends on the motion.
     [[nodiscard]] bool has_feedback() const { return has_feedback_; }
 
 private:
@@ -59,22 +59,23 @@ private:
     const Mechanics& mechanics_;
     Conditions& conditions_;
     const Flow& solver_;
-    double inertia_ = 0;  ///< of all bodies
+    double inertia_ = 0;  ///< total inertia of all bodies
     bool has_feedback_;
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;
 };
 
-/// Returns the moment at which a joint that holds would slip this way with this speed, or with the least that is not
-/// lost in rounding; `y` is room for its state.
+/// Returns the moment in which a sticking joint slips in direction `way` at `speed`, or at the smallest speed that
+/// survives rounding. `y` is storage for its state.
 Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, model::Motion way, double speed,
                    std::vector<double>& y);
 
-/// Returns how far the torque that holds a joint is beyond what the joint can hold, and which way it would go. Only the
-/// part of a pull counts that is right whatever users' states are wrong by: what only touches a limit holds.
+/// Returns by how much the torque on a sticking joint exceeds the holding limit, and sets the direction of breakaway.
+/// Only the part of the pull that exceeds the errors of users' states counts, so that touching a limit is not a
+/// breakaway.
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,
               model::Motion& towards);
 
-/// The part of a pull that is right whatever states of the user's are wrong by.
+/// The fraction of a pull that remains after subtracting the possible errors of users' states.
 inline double known_part(const Mechanics& mechanics) {
     return mechanics.states_of_user() > 0 ? 1 - 3e-12 : 1;
 }

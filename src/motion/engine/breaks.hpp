@@ -1,4 +1,4 @@
-// Breaks of a run that nobody announced: found ones, and those that delays bring back.
+// Undeclared breaks of a run: those that were found by search, and those that delays repeat.
 #pragma once
 
 #include <utility>
@@ -9,30 +9,31 @@
 
 namespace dinal::motion::engine {
 
-/// Holds times only. It does not search for breaks.
+/// A list of break times. The search itself is elsewhere.
 class Breaks {
 public:
-    using Echo = std::pair<double, int>;  ///< the time, and the number of delays that it came through
+    using Echo = std::pair<double, int>;  ///< time, and number of delays it has passed through
 
     explicit Breaks(const Mechanics& mechanics);
 
     [[nodiscard]] double shortest_delay() const { return shortest_delay_; }
     [[nodiscard]] double longest_delay() const { return longest_delay_; }
-    /// Returns the first one ahead, or `never`.
+    /// The next break, or `never`.
     [[nodiscard]] double next() const {
         double found = model::never;
         if (!found_.empty()) found = found_.front();
         return echoes_.empty() ? found : std::min(found, echoes_.front().first);
     }
-    /// Notes a break ahead. Returns false if it is noted already.
+    /// Adds a break. Returns false if it is already known.
     bool add(double t);
     [[nodiscard]] bool many() const { return found_.size() >= most_found; }
-    /// Forgets those up to time t. If no other is ahead and a load has jumped evenly, notes its next jump before `end`.
+    /// Removes breaks up to time t. If none is left and a load has jumped periodically, adds the next jump before
+    /// `end`.
     void pass(double t, double end);
 
-    /// Something jumps at time t: delays bring that back.
+    /// Registers a jump at time t, which delays repeat later.
     void echo(double t, int generation);
-    /// Echoes up to time t become echoes of the next generation. Returns whether there were any.
+    /// Turns echoes up to time t into echoes of the next generation. Returns whether there were any.
     bool pass_echoes(double t);
     [[nodiscard]] const std::vector<Echo>& echoes() const { return echoes_; }
     void go_on_with(std::vector<Echo> echoes) { echoes_ = std::move(echoes); }

@@ -1,14 +1,14 @@
-// The limits for what goes on without end and leads nowhere.
+// Limits that end a run that would never advance.
 #pragma once
 
 #include "motion/engine/mechanics.hpp"
 
 namespace dinal::motion::engine {
 
-/// The times between the acts of one event. Bounces of a user's own have ever shorter ones.
+/// The intervals between firings of one event. A user's own impacts can make them shrink to zero.
 struct Fading {
     double last = -model::never, gap = model::never, first = 0;
-    /// One more act, at time t. Returns whether the times between them fade to nothing.
+    /// Registers a firing at time t. Returns whether the intervals shrink towards zero.
     bool after(double t) {
         constexpr double next_to_nothing = 1e-5;
         const double now = t - last;
@@ -18,39 +18,39 @@ struct Fading {
     }
 };
 
-/// Counts what follows each other at once: a run that gets nowhere ends.
+/// Counts events and failures that follow one another without progress in time.
 class Chatter {
 public:
     Chatter() = default;
-    /// `unit`: of time.
+    /// `unit` is the time scale of the motion.
     Chatter(double start, double unit) : unit_(unit), attempts_since_(start) {}
 
-    /// An event at time t. Returns whether more than `most` followed each other at once.
+    /// Registers an event at time t. Returns whether more than `most` events followed one another at once.
     bool too_often(double t, int most = most_at_once) {
-        constexpr double at_once = 1e-9;  // events that follow each other within it, so often, go on for ever
+        constexpr double at_once = 1e-9;  // events closer than this count as following at once
         at_once_in_a_row_ = t - last_event_ <= at_once * unit_ ? at_once_in_a_row_ + 1 : 0;
         last_event_ = t;
         return at_once_in_a_row_ > most;
     }
-    /// A condition was crossed; `back`: soon after it was crossed the other way.
+    /// Registers the crossing of a condition; `back` says whether it reverses a crossing shortly before.
     void crossed(bool back) { to_and_fro_ = back ? to_and_fro_ + 1 : 0; }
     [[nodiscard]] bool to_and_fro_endlessly() const { return to_and_fro_ >= most_at_once; }
-    /// One more attempt failed at time t. Returns whether `most` of them came no farther than a little.
+    /// Registers a failed attempt at time t. Returns whether `most` of them made almost no progress.
     bool too_many_attempts(double t, int most) {
         if (++attempts_ < most) return false;
         if (t - attempts_since_ < 1e-7 * most * unit_) return true;
         attempts_ = 0, attempts_since_ = t;
         return false;
     }
-    /// One more stretch is too short to be seen. Returns whether there were too many in a row.
+    /// Registers a stretch too short to matter. Returns whether there were too many in a row.
     bool too_many_short() { return ++too_short_ > most_short; }
     void stretch_of(double length) {
         if (length > 1e-7 * unit_) too_short_ = 0;
     }
-    /// A joint was let go and did not leave: it must be pulled clearly farther the next time. Returns whether that is
-    /// more than rounding explains, after it was doubled often.
+    /// Registers that a released joint did not move: its next release needs a clearly larger pull. Returns whether this
+    /// margin has grown beyond what rounding explains.
     static bool too_blunt(Slipping& how, double torques) {
-        constexpr double most = 1e-9;  // of the torques
+        constexpr double most = 1e-9;  // relative to the torques
         how.blunt = std::max(2 * how.blunt, 64 * rounding * torques);
         return how.blunt > most * torques;
     }
@@ -59,7 +59,7 @@ private:
     static constexpr int most_at_once = 200, most_short = 400;
     double unit_ = 1, last_event_ = -model::never, attempts_since_ = 0;
     int at_once_in_a_row_ = 0, attempts_ = 0, too_short_ = 0;
-    int to_and_fro_ = 0;  ///< crossings of one condition, each soon after the one before
+    int to_and_fro_ = 0;  ///< crossings of one condition, each shortly after the previous one
 };
 
 }  // namespace dinal::motion::engine

@@ -14,24 +14,25 @@ using model::Outcome;
 
 namespace {
 
-constexpr double near_failure = 1e-9;  // of the pace: the distance of a run from the failure of a function
+// distance to the failure of a function at which a run ends, relative to the pace
+constexpr double near_failure = 1e-9;
 constexpr int most_attempts = 20000;
-constexpr int most_attempts_sampled = 3000;  // where a function of the motion is asked that may do anything
-constexpr double huge = 1e100;               // a function that is no number at such a state says nothing about itself
+constexpr int most_attempts_sampled = 3000;  // if a function of the motion is only known by samples
+constexpr double huge = 1e100;               // beyond this a non-finite value is not blamed on the function
 
-/// Returns about how long a polynomial of degree 16 can follow a motion under a law of friction from this speed on:
-/// along a line that makes it grow or die out fast, and along a curve until the speed has changed by its scale. `first`
-/// is the change of the speed by time, `second` the size of what that changes by.
+/// Returns the time for which a polynomial of degree 16 can follow a motion under a friction law from this speed on. On
+/// a straight range that is limited by its rate of growth or decay, on a curve by the time until the speed has changed
+/// by law.scale(). `first` and `second` are the first two time derivatives of the speed, `second` as a magnitude.
 double longest_step(const model::Friction& law, const model::SpeedRange& range, double speed, double first,
                     double second, double C, double I) {
     constexpr double any = std::numeric_limits<double>::infinity();
-    constexpr double steepest = 4;  // what exp(-a t) may have for a t: degree 16 follows it then
+    constexpr double steepest = 4;  // limit of a t for exp(-a t) on a polynomial of degree 16
     if (range.straight) {
         const double a = (C + range.slope) / I;
         const bool begins = speed == range.from || speed == range.to;
         return a < 0 || begins ? steepest / std::fabs(a) : any;
     }
-    // Towards greater speeds a law becomes straighter; towards smaller ones what counts is where the step ends.
+    // The scale of a law grows with speed, so for decreasing speed the scale at the end of the step matters.
     double change = law.scale(speed);
     if (first < 0) {
         for (int i = 0; i < 4; ++i) change = law.scale(std::max(0.0, speed - change));
@@ -64,7 +65,7 @@ void Engine::choose(const Frame& frame) {
     }
     double limit = std::min(problem_.window.end, breaks);
     if (problem_.step > 0) {
-        // A break that rounding puts beside a step's end is that end.
+        // A break within rounding of a step's end counts as that end.
         const double beside = std::max(1e-9 * problem_.step, 4 * rounding * std::fabs(now_.t.hi));
         const double steps = std::floor((now_.t.hi - problem_.window.start + beside) / problem_.step) + 1;
         const double step_end = problem_.window.start + steps * problem_.step;
@@ -74,7 +75,7 @@ void Engine::choose(const Frame& frame) {
                          breaks_.shortest_delay() / 2 * (1 - 1e-12)});
     if (pace_.bad_time < model::never) h = std::min(h, now_.t.until(pace_.bad_time) / 4);
     if (problem_.step == 0) h = std::min(h, longest_under_friction(frame) / 2);
-    // As long as it takes to a wall, or back to it, and a little more: a small bounce is to be seen.
+    // The stretch reaches just past the wall, or past the return to it, so that a small bounce is resolved.
     if (walls_.any) h = std::min(h, std::max(0.6 * until_wall(frame), 1e-9 * pace_.unit));
     const double remaining = now_.t.until(limit);
     const bool to_limit = remaining <= 2 * h * (1 + 1e-9);
@@ -87,7 +88,7 @@ void Engine::choose(const Frame& frame) {
     segment_.may_grow = pace_.h < frame.longest / 2;
 }
 
-/// Returns the time to the next wall, if all accelerations stay as they are.
+/// Returns the time to the next wall under constant accelerations.
 double Engine::until_wall(const Frame& frame) {
     double first = model::never;
     if (!balances_->at_present(now_, frame, segment_, room_.balance)) return first;
@@ -110,7 +111,7 @@ double Engine::until_wall(const Frame& frame) {
     return first;
 }
 
-/// Returns the length of a stretch under laws of friction that bend with the speed.
+/// Returns the longest stretch that friction laws with a curved dependence on speed allow.
 double Engine::longest_under_friction(const Frame& frame) {
     double longest = model::never;
     bool looked = false;

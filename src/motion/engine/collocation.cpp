@@ -8,9 +8,10 @@ namespace dinal::motion::engine {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int many_iterations = 4;  // slopes that need so many no longer serve, and are asked anew
+constexpr int many_iterations = 4;  // after so many iterations the slopes are recomputed for the next stretch
 constexpr double much = 16;
-constexpr double most_left_over = 1e-6;  // of the equation; a stiff rate multiplies the rounding of its steps
+// limit of the relative residual; a stiff rate multiplies the rounding of its steps
+constexpr double most_left_over = 1e-6;
 
 }  // namespace
 
@@ -22,7 +23,7 @@ Flow::Attempt Collocation::accept(Segment& s, const Mode& mode, const Frame& fra
     return attempt;
 }
 
-/// The first guess: accelerations and rates stay as they are at the first node.
+/// The initial guess: accelerations and rates are constant, equal to those of the first node.
 void Collocation::guess(Segment& s, const Frame& frame) {
     const auto since = [&s](std::size_t j) { return s.h * (1 + cheb::nodes[j]); };
     for (std::size_t i = 0; i < n_; ++i) {
@@ -43,7 +44,8 @@ void Collocation::guess(Segment& s, const Frame& frame) {
     }
 }
 
-/// The first guess where a smooth motion goes on: accelerations and rates do as they did. Whether it does.
+/// The initial guess after a smooth stretch: extrapolates accelerations and rates. Returns false if no smooth stretch
+/// precedes.
 bool Collocation::go_on(const Segment& s, const Frame& frame) {
     constexpr double nearly = 1e-6, longer = 4;
     const bool follows = end_.t == s.start.hi && !s.from_break && end_.groups == frame.bodies;
@@ -78,7 +80,7 @@ void Collocation::remember_end(const Segment& s, const Frame& frame) {
     }
 }
 
-/// Velocities and angles from the accelerations of the groups, states from their rates.
+/// Computes velocities and angles from the accelerations of the groups, and states from their rates.
 void Collocation::place(Segment& s, const Frame& frame) {
     Nodes velocity{}, way{};
     of_groups_.resize(frame.groups());
@@ -118,10 +120,11 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
     const std::size_t count = frame.groups() + m_;
     unknown_.resize(count), found_.resize(count);
     residual_.resize(static_cast<Eigen::Index>(inner * count));
-    if (count > 0) newton_.begin(mode, frame);  // what stands still lets it know what it knew
+    if (count > 0) newton_.begin(mode, frame);  // keeps the slopes if everything stands still
     if (!mechanics_.nonlinear() && m_ == 0 && (count == 0 || newton_.knows_inverse(s, mode, frame, noise_.floor())))
         return find_at_once(s, mode, frame);
-    // Beside a jump of a rate differences tell a slope that is none; where a segment is short it does without any.
+    // Near a jump of a rate, differences give a wrong slope; on a short segment the iteration converges without
+    // slopes.
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
         begin_at_first_node(s, frame);
@@ -139,7 +142,8 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
     return Attempt::shorten;
 }
 
-/// Where all is linear, one step is exact: from a motion without acceleration, whose torques are known at all nodes.
+/// Solves a linear system exactly in one Newton step. It starts from a motion without acceleration, whose torques are
+/// evaluated at all nodes.
 Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Frame& frame) {
     for (Nodes& a : unknown_) a.fill(0);
     guess(s, frame);
@@ -181,7 +185,7 @@ Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Fram
     return Attempt::resolved;
 }
 
-/// All accelerations and rates are what they are at the first node.
+/// Sets all accelerations and rates to those of the first node.
 void Collocation::begin_at_first_node(Segment& s, const Frame& frame) {
     for (std::size_t k = 0; k < unknown_.size(); ++k) unknown_[k].fill(found_[k][0]);
     for (std::size_t i = 0; i < n_; ++i) {
@@ -190,14 +194,14 @@ void Collocation::begin_at_first_node(Segment& s, const Frame& frame) {
     for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k].fill(found_[frame.groups() + k][0]);
 }
 
-/// Newton's iteration with these slopes. Returns shorten if it does not converge.
+/// Newton's iteration with these slopes. Returns `shorten` if it does not converge.
 Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& frame, Slopes slopes) {
     const std::size_t count = unknown_.size();
     const bool from_before = slopes == Slopes::known && newton_.known();
     double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i < most_iterations; ++i) {
         if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
-            newton_.forget();  // they may be those of a state far away
+            newton_.forget();  // the slopes may belong to a distant state
             return Attempt::failed;
         }
         if (count == 0) return Attempt::resolved;
@@ -219,7 +223,7 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
         const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
         const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
                                (i >= 2 && change <= stalls && rate > 0.3);
-        // Slopes that are too great, as those of a piece of a function that was left, make every step small.
+        // Slopes that are too large, such as those of a function's previous piece, make every Newton step too small.
         const bool doubtful = from_before && left > std::max(much * change, tolerance_);
         if (converged && doubtful) return Attempt::shorten;
         if (converged && left <= std::max(most_left_over, stalls)) {
@@ -232,7 +236,7 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
     return Attempt::shorten;
 }
 
-/// Finds the width of the motion of each group and state, and the residual of its equation relative to that.
+/// Computes the range of motion of each group and state, and the residual of its equation relative to that range.
 Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& frame) {
     const std::size_t groups = frame.groups(), count = unknown_.size();
     Residual found;
@@ -266,7 +270,7 @@ Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& 
     return found;
 }
 
-/// Returns the change, beside the width of the motion.
+/// Applies the Newton step. Returns the greatest change relative to the range of motion.
 double Collocation::take_step(double h) {
     double change = 0;
     for (std::size_t k = 0; k < unknown_.size(); ++k) {

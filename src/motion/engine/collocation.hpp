@@ -1,4 +1,5 @@
-// Collocation at Chebyshev points: accelerations and motion at the nodes of a stretch agree.
+// Collocation at Chebyshev points: at every node of a stretch the accelerations agree with those that the motion
+// causes.
 #pragma once
 
 #include <Eigen/Core>
@@ -27,20 +28,20 @@ private:
     Attempt find_at_once(Segment& segment, const Mode& mode, const Frame& frame);
     void begin_at_first_node(Segment& segment, const Frame& frame);
     struct Residual {
-        double left = 0;        ///< over of the equations
-        double stalls = 1e-12;  ///< a change so small is noise
+        double left = 0;        ///< greatest relative residual of the equations
+        double stalls = 1e-12;  ///< changes below this are noise
     };
     Residual find_residual(const Segment& segment, const Frame& frame);
     double take_step(double h);
 
-    /// The end of the last stretch, and there each of the unknowns with its first three derivatives.
+    /// The end of the last stretch, with the value and three derivatives of each unknown there.
     struct {
         double t = -model::never, h = 0;
         std::vector<Frame::Shape> groups{};
         std::vector<std::array<double, 4>> unknowns{};
     } end_;
-    std::vector<double> scales_;    ///< the width of the motion of each group and state
-    std::vector<Nodes> of_groups_;  ///< the changes of the groups' velocities
+    std::vector<double> scales_;    ///< range of motion of each group and state
+    std::vector<Nodes> of_groups_;  ///< changes of the groups' velocities
     std::vector<char> placed_;
     Eigen::VectorXd residual_, step_;
 };

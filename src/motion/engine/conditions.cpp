@@ -14,7 +14,7 @@ bool is_known(double v) {
     return std::isfinite(v);
 }
 
-/// Searches one stretch for the conditions that change in it.
+/// Searches a stretch for conditions that change their decision.
 class ConditionSearch {
 public:
     struct Crossing {
@@ -22,12 +22,14 @@ public:
         Piecewise* function;
         std::size_t condition;
         double within;
-        bool blurred;  ///< it is clear of zero at the beginning, beside the rounding of the motion there
+        /// whether its margin at the start exceeds the rounding there, but not the rounding over the stretch
+        bool blurred;
     };
     ConditionSearch(const Segment& segment, double before)
         : segment_(segment), before_(before), earliest_(std::min(1.0, before)) {}
 
-    /// Watches the conditions of a function. `rounded`: a change of each that is rounding.
+    /// Watches the conditions of a function, given the margins at the nodes. `rounded` is the change of each margin
+    /// caused by rounding.
     void watch(Piecewise& function, const std::vector<Nodes>& values, const std::vector<double>& rounded) {
         for (std::size_t c = 0; c < values.size(); ++c) {
             if (!watch(function, c, values[c], rounded[c], {})) {
@@ -35,8 +37,9 @@ public:
             }
         }
     }
-    /// The formula of a piece may have no value beyond its ends, as the square root of what was |theta|: such a
-    /// condition is watched between the ends of the piece by the others, or as far as it has a value.
+    /// Watches the conditions whose margin is not finite everywhere. The formula of a piece may have no value beyond
+    /// its ends, such as the root of a former |theta|. Such a condition is watched up to the next crossing of another
+    /// one, or as far as it has a value.
     void watch_not_finite();
     [[nodiscard]] const std::vector<Crossing>& crossings() const { return crossings_; }
     [[nodiscard]] double earliest() const { return earliest_; }
@@ -61,7 +64,7 @@ private:
     std::vector<double> y_, margins_;
 };
 
-/// Returns false if the condition has not a value everywhere in this part.
+/// Returns false if the margin is not finite everywhere in this part.
 bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
     const bool whole = part.first == -1 && part.last == 1;
     const auto exact = [&](double x) {
@@ -72,7 +75,7 @@ bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, do
     };
     if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
     if (!std::all_of(values.begin(), values.end(), is_known)) return false;
-    // A condition that M drives back may be on the wrong side already, by no more than rounding.
+    // A condition that M drives back may already be on the wrong side by rounding.
     const double within = 64 * rounding * greatest(values), beyond = std::max(within, 16 * rounded);
     const auto* const clear =
         std::find_if(values.begin(), values.end(), [beyond](double v) { return std::fabs(v) > beyond; });
@@ -126,8 +129,8 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         if (forgotten_) cease();
         slides_.follow(mode);
     }
-    // A velocity that leaves 0 is taken a little later, as is the time: a condition may lose the first digits, as
-    // floor(10 + velocity).
+    // The state is taken slightly later if a velocity leaves 0, because a condition may lose small digits, such as
+    // those of floor(10 + velocity).
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
     double t = at.t;
@@ -154,7 +157,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     if (t > at.t && mechanics_.next_break(at.t) <= t) t = at.t;
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
-        // What has passed zero at a standstill and lets the velocity leave does not wait for that speed to decide it.
+        // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
         const bool just_crossed = last_.function == &function && last_.t == at.t;
         function.decide({t, at.side, y}, just_crossed ? again : again | of_leaving);
     });
@@ -187,7 +190,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             function.margins(segment.moment(j, y), margins);
             for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
         }
-        // Their change by some ulps of the motion or of the time is rounding.
+        // A change of the margin caused by a few ulps of the motion or of the time counts as rounding.
         constexpr double ulps = 1 + 4 * rounding;
         std::vector<double> rounded(count, 0);
         y = begin;
@@ -204,7 +207,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             y[k] = begin[k];
         }
         round(segment.times[0] * ulps);
-        // A condition that was just crossed is as near to zero as it was then, also in a stretch that is shorter.
+        // The margin of a condition that was just crossed may be as large as it was then, also on a shorter stretch.
         for (std::size_t c = 0; c < count && last_.function == &function && last_.t == now; ++c) {
             if (function.conditions()[c].step == last_.step) rounded[c] = std::max(rounded[c], last_.within);
         }
@@ -214,8 +217,8 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     if (search.crossings().empty()) return;
     ending = {search.earliest(), By::condition};
     within_ = 0;
-    // Each function crosses its first step only: later ones follow from it, as |v| > 0 from the sign of v, and may not
-    // change at all.
+    // Only the first crossing of each function counts: later steps depend on it, as |v| > 0 depends on the sign of
+    // v, and may not change at all.
     std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
     for (const auto& [x, function, condition, within, blurred] : search.crossings()) {
         if (x > ending.x + one_instant) continue;

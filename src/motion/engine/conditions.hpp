@@ -1,4 +1,5 @@
-// The conditions of the motion in users' functions that are read: each is decided, watched and crossed.
+// The conditions on the motion in users' functions that are known as formulas: they are decided, watched and
+// crossed.
 #pragma once
 
 #include <cstdint>
@@ -14,51 +15,51 @@
 
 namespace dinal::motion::engine {
 
-/// Holds the functions to their pieces. It changes no state and reports no event.
+/// Keeps each function on one smooth piece until a condition changes. Changes no state and reports no event.
 class Conditions {
 public:
-    /// `told`: the number of values of the state that functions are given; `unit`: of time.
+    /// `told` is the number of values of the state passed to functions; `unit` is the time scale of the motion.
     Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit);
 
     [[nodiscard]] bool any() const { return any_; }
-    /// Returns whether a function of the motion has no pieces that are known: it may jump anywhere.
+    /// Returns whether a function of the motion has unknown pieces, so that it may jump anywhere.
     [[nodiscard]] bool samples() const { return samples_; }
-    /// Loads slide from the start where it is a standstill on a surface on which they jump.
+    /// Starts slides of loads that jump at the surface on which the motion rests.
     void start(Now& now) {
         mechanics_.for_each_piecewise(now.t.hi, [&](Piecewise& function) { slides_.start(function, now); });
         forgotten_ = forgotten_ && !slides_.any();
     }
-    /// All are decided anew the next time: the state has jumped.
+    /// Discards all decisions, for use after the state has jumped.
     void forget() { forgotten_ = true; }
-    /// The same at a break, unless that is where one of them passes zero and is not decided by rounding.
+    /// Discards all decisions at a break, unless a condition passes zero there, whose decision would be rounding.
     void pass_break(double t) {
         if (t != crossing_at_) forgotten_ = true;
     }
-    /// A stretch is made again, up to the time at which one passes zero.
+    /// Announces that the stretch is repeated up to this time, at which a condition passes zero.
     void crosses_at(double t) { crossing_at_ = t; }
 
-    /// Decides them at a moment, if a contact begins to hold a velocity there or is about to let it leave 0: then the
-    /// velocity is exact. Other decisions stay, because rounding would reverse those that have just passed zero.
+    /// Decides the conditions at a moment if a contact begins to hold a velocity or is about to release it from 0,
+    /// since that velocity is exact. Other decisions stay, because rounding would reverse those that have just changed.
     void decide(const Moment& at, const Mode& mode, const Segment& last);
-    /// Returns whether all are decided, and certainly stay so from here on where the motion is within these ranges.
+    /// Returns whether all conditions have decisions that certainly hold while the motion is within these ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges, const Moment& from);
     [[nodiscard]] bool slides() const { return slides_.any(); }
-    /// Ends the stretch where the first one changes, if that is before its end.
+    /// Ends the stretch at the first change of a condition, if it precedes the present end.
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 
     struct Crossed {
-        bool jumps = false;     ///< a function has jumped
-        std::size_t count = 0;  ///< functions that have jumped, other than laws of friction
+        bool jumps = false;     ///< whether a function has jumped
+        std::size_t count = 0;  ///< number of functions that jumped, without friction laws
         std::vector<SlideChange> slides{};
-        double work = 0;  ///< of the load of the first, which has put velocities on the condition
+        double work = 0;  ///< work done by the first sliding load when the velocities were moved onto the condition
         bool endless = false;
     };
-    /// Crosses those at which the stretch has ended. Many jumps in a row that are next to nothing are digits that the
-    /// user has cut off: then all are let go, and the functions are sampled from there on; so they are beside a kink
-    /// that rounding reverses. Where a load is driven back from both sides, it slides along the condition, and the
-    /// velocities are put on it.
+    /// Crosses the conditions at which the stretch has ended. A long row of tiny jumps comes from truncated digits:
+    /// then all decisions are dropped, and the functions are sampled from there on. The same happens at a kink that
+    /// rounding reverses. If both sides of a jump drive the motion back, the load slides along the condition, and the
+    /// velocities are moved onto it.
     Crossed cross(const Ending& ending, Now& now, Chatter& chatter);
-    /// Where contacts hold, loads no longer slide. Returns those that have ceased to since the last call.
+    /// Ends the slides of loads whose joints now stick. Returns the slides that ended since the last call.
     std::vector<SlideChange> ceased(const Now& now) {
         if (slides_.any()) slides_.follow(now.mode);
         if (slides_.any() && (forgotten_ || slides_.lost(now.here()))) forget(), cease();
@@ -79,17 +80,18 @@ private:
     struct {
         const Piecewise* function = nullptr;
         std::size_t step = 0;
-        double from = 0, t = -model::never;  ///< the decision that it had until then
-        double within = 0;                   ///< it was taken to be so near to zero
+        double from = 0, t = -model::never;  ///< the decision before, and the time at which it changed
+        double within = 0;                   ///< greatest |margin| that counted as zero
     } last_;
-    double within_ = 0;       ///< the same of those that are about to be crossed
-    int small_in_a_row_ = 0;  ///< jumps
-    double greatest_ = 0;     ///< value or jump so far
+    double within_ = 0;       ///< the same for the conditions about to be crossed
+    int small_in_a_row_ = 0;  ///< number of successive small jumps
+    double greatest_ = 0;     ///< greatest value or jump so far
     Slides slides_;
     std::vector<SlideChange> ceased_;
     TorqueSizes sizes_;
-    std::vector<double> soon_;   ///< the state, where a velocity that leaves 0 has left
-    std::vector<int> standing_;  ///< of each body: 0 it moves, 1 a contact holds it, 2 and 3 it is about to leave
+    std::vector<double> soon_;  ///< state slightly later, after a velocity has left 0
+    /// for each body: 0 moves, 1 held by a contact, 2 or 3 about to leave in either direction
+    std::vector<int> standing_;
 };
 
 }  // namespace dinal::motion::engine

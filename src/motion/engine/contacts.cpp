@@ -61,7 +61,7 @@ void Projection::apply(Now& now, const Frame& frame, Side when) {
     }
 }
 
-/// Returns the angle that a body is moved to.
+/// Returns the prescribed angle of a body.
 double Projection::angle_given(std::size_t body, double t, Side when) const {
     const model::Excitation& angle = mechanics_.system().bodies[body].moved->motion;
     const bool breaks = when != Side::at && angle.next_break(std::nextafter(t, -model::never)) == t;

@@ -1,4 +1,4 @@
-// The memory of contacts from one decision to the next.
+// What contacts remember from one decision to the next.
 #pragma once
 
 #include <vector>
@@ -8,35 +8,36 @@
 
 namespace dinal::motion::engine {
 
-/// A value, as Now is. Their modes are in Now.
+/// A value type, like Now. The modes of the contacts are in Now.
 struct Contacts {
-    /// The last time that a joint came to stick: the way in which it slid, and the pull.
+    /// The last time a joint began to stick: its direction before that, and its pull.
     struct Arrival {
         model::Motion slid = model::Motion::stuck;
         double pull = 0;
     };
     struct Of {
-        model::Motion arrived = model::Motion::stuck;  ///< the way in which it slid until now; stuck: it did not
+        model::Motion arrived = model::Motion::stuck;  ///< direction of sliding until now; stuck: it did not slide
         Arrival arrival = {};
-        model::Event creeping = {};  ///< while it creeps: its stick, an event if nothing moves it before the end
-        int edge = 0;                ///< the corner that its speed is at, 1 the upper one of its range
-        bool crept = false;          ///< its slip has come down to rounding, and it may creep
-        bool leaves_wall = false;    ///< it begins at a wall, and leaves it
-        bool leaned = false;         ///< it came to stand at a wall, and that was reported
+        /// the stick event of a creep, reported only if nothing moves the joint before the end
+        model::Event creeping = {};
+        int edge = 0;              ///< end of its speed range at which it is: -1 lower, 1 upper, 0 neither
+        bool crept = false;        ///< whether its slip has fallen to rounding, so that it may creep
+        bool leaves_wall = false;  ///< whether it begins at a wall and leaves it
+        bool leaned = false;       ///< whether it stopped at a wall and that was reported
     };
-    std::vector<Of> of;         ///< each joint
-    double size_at_stop = 0;    ///< of the torques, where a joint came to slip 0 the last time
-    std::size_t last_full = 0;  ///< the joint of a loop that came to its limit last
+    std::vector<Of> of;         ///< one for each joint
+    double size_at_stop = 0;    ///< magnitude of the torques when a joint last reached slip 0
+    std::size_t last_full = 0;  ///< joint of a loop that reached its limit last
     double last_full_at = -model::never;
 
-    /// Lets a joint slide this way from now on.
+    /// Makes a joint slide in direction `way` from now on.
     void slide(const Mechanics& mechanics, Now& now, std::size_t joint, model::Motion way, bool leaving);
 };
 
-/// Makes what is held together have one velocity to the letter, and what leans stand at its wall.
+/// Makes the velocities of bodies that stick together exactly equal, and puts joints at a wall exactly onto it.
 class Projection {
 public:
-    /// The joints behind the first `told` ones move bodies.
+    /// The joints from index `told` on impose prescribed motions.
     Projection(const Mechanics& mechanics, std::size_t told)
         : mechanics_(mechanics), told_(told), offsets_(mechanics.bodies()) {}
     void apply(Now& now, const Frame& frame, Side when);

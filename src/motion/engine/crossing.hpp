@@ -43,7 +43,7 @@ double first_true(const Condition& holds, double x) {
 }
 
 /// Returns whether sign * series is certainly positive on the whole piece: its constant term exceeds the sum of the
-/// others. `of_size`: size of the values it is a difference of.
+/// others. `of_size` is the magnitude of the numbers whose difference the series is.
 inline bool stays_above_zero(double sign, const Series& series, double of_size = 0) {
     constexpr double few = 64;
     const double all = cheb::size(series), others = all - std::fabs(series[0]);
@@ -57,10 +57,10 @@ public:
     /// Values up to `rounded` count as zero.
     Watched(const Nodes& values, const F& exact, double rounded = 0)
         : Watched(values, exact, rounded, cheb::fit(values), 0) {}
-    /// The same with a known series, of which the function has only some digits more.
+    /// The same with a given series that has slightly fewer digits than the function.
     Watched(const Nodes& values, const F& exact, double rounded, const Series& series)
         : Watched(values, exact, rounded, series, 1e-13) {}
-    /// The first x after `from` at which it leaves its half; an unknown half is set from the nodes.
+    /// The first x after `from` at which the value leaves this half; an unknown half is set from the nodes.
     [[nodiscard]] std::optional<double> leaves(Half& half, double from) const {
         const bool at_zero = half == 0 || std::fabs(from == -1 ? values_[0] : exact_(from)) <= floor_;
         if (half == 0) {
@@ -69,13 +69,12 @@ public:
             }
             if (half == 0) return {};
         }
-        // An impact put it on the other side, by more than the rounding of times: its zero has passed.
+        // An impact has put the value on the other side by more than rounding, so its zero is in the past.
         constexpr double clearly = 1e-9;
         if (from == -1 && half * values_[0] < -std::max(floor_, clearly * size_)) return from;
         if (!at_zero) return smooth_ ? of_series(half, from) : of_values(half, from);
-        // Steps outwards until the value is clear of rounding. A zero at the start is not divided out, as that of a
-        // curve in first_below(): the function itself decides here, whose value there is rounding, and it may have no
-        // series.
+        // Moves away from `from` until the value exceeds rounding. Unlike in first_below(), a zero at the start is not
+        // divided out, because the function may have no series.
         double d = 0x1p-46;
         while (from + d < 1 && std::fabs(exact_(from + d)) <= floor_) d *= 2;
         const double start = std::min(1.0, from + d);
@@ -84,7 +83,7 @@ public:
         return smooth_ ? from : first_true(is_beyond, start);  // the value may have been zero for long
     }
 
-    /// Returns whether it is clearly in this half somewhere before x: at a node, or halfway to x.
+    /// Returns whether the value is clearly in this half before x, at a node or halfway to x.
     [[nodiscard]] bool is_clearly(Half half, double x) const {
         if (!(x > -1)) return false;
         for (std::size_t j = 0; j < node_count; ++j) {
@@ -104,7 +103,7 @@ private:
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
-    /// The series tells the places to search; the exact value, which has some digits more, decides.
+    /// Finds candidate zeros by the series; the function itself, which has more digits, decides.
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         Nodes values = values_;
@@ -121,7 +120,7 @@ private:
             }
             double a = std::max(start, *x - near);
             while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
-            if (half * exact_(a) < -rounded_) return a;  // it has been below earlier
+            if (half * exact_(a) < -rounded_) return a;  // the value was below zero earlier
             const double b = std::min(1.0, *x + near);
             if (const auto zero = refined(half, a, b)) return zero;
             start = b;
@@ -156,7 +155,7 @@ private:
 
     const Nodes& values_;
     const F& exact_;
-    double rounded_, usual_;  ///< the distance of the zeros of both, if not 0
+    double rounded_, usual_;  ///< rounding of the values if greater than 0, and in general
     Series series_;
     double size_ = 0, floor_ = 0;
     bool smooth_ = false;

@@ -14,15 +14,15 @@ using model::EventKind;
 using model::Joint;
 using model::Motion;
 
-constexpr double no_motion = 1e-9;      // of the acceleration that the torques at a joint could give
-constexpr double near_limit = 1e-10;    // of the torques: what differences tell of a belt is known no better
-constexpr double clearly_jumps = 1e-9;  // of the torques
-constexpr double little_more = 1e-7;    // of the torques: what a joint that comes to its limit will be short of next
+constexpr double no_motion = 1e-9;      // relative to the acceleration that the torques at a joint could cause
+constexpr double near_limit = 1e-10;    // relative to the torques; the slopes of belts are no more accurate
+constexpr double clearly_jumps = 1e-9;  // relative to the torques
+constexpr double little_more = 1e-7;    // relative to the torques; a joint at its limit will soon lack this much
 
-/// One decision in progress.
+/// The work of one decision.
 class Decider {
 public:
-    /// `made` begins with the present.
+    /// `made` initially holds the present and receives the result.
     Decider(const Evaluation& by, const Cause& cause, Decision& made)
         : by_(by),
           mechanics_(by.mechanics),
@@ -31,7 +31,7 @@ public:
           made_(made),
           asked_(by.room.asked),
           found_(by.room.balance) {}
-    /// Returns false if something is not finite.
+    /// Decides. Returns false if a value is not finite.
     bool decide();
 
 private:
@@ -41,11 +41,11 @@ private:
         Motion way;
     };
     enum class Ways { right, changed, round };
-    /// What the loads on either side of slip 0 do to a joint that holds.
+    /// The effect on a sticking joint of the loads on both sides of slip 0.
     struct BothSides {
-        double backward = 0, forward = 0;  ///< their pull
+        double backward = 0, forward = 0;  ///< pull with the loads of each side
         bool drive_back = false;
-        double beyond = -model::never;  ///< the limit of that side
+        double beyond = -model::never;  ///< greatest excess over a limit, on the side `towards`
         Motion towards = Motion::forward;
     };
     struct Box;
@@ -91,9 +91,9 @@ private:
     Decision& made_;
     std::vector<Asked>& asked_;
     Balance& found_;
-    std::size_t full_ = 0;        ///< the joint of a loop that came to its limit
-    bool found_at_stop_ = false;  ///< the balance is that of the only joint where it stopped, and it holds
-    double between_ = 0;          ///< the torque of what was released, between two doubles of the time
+    std::size_t full_ = 0;        ///< joint of a loop that has reached its limit
+    bool found_at_stop_ = false;  ///< whether found_ is the balance at the stop of the only joint, which sticks
+    double between_ = 0;          ///< rounding of the released joint's torque between two doubles of the time
 };
 
 bool Decider::decide() {
@@ -106,7 +106,7 @@ bool Decider::decide() {
     project(all_hold);
     by_.room.sizes.find(mechanics_, by_.last, now().here());
     const bool loops = !all_hold.closing.empty();
-    // One after the other comes to its limit now, or can not go: no sharing holds any longer.
+    // At one instant several joints of a loop reach their limits or fail to leave: torques can no longer be shared.
     const bool all_used = loops && memory().last_full_at == now().t.hi;
     if (loops && released_) memory().last_full_at = now().t.hi, memory().last_full = released_->joint;
     full_ = released_ ? released_->joint : all_used ? memory().last_full : joints();
@@ -124,7 +124,7 @@ bool Decider::decide() {
     return true;
 }
 
-/// Finds the joints at slip 0. All of them hold at first.
+/// Finds the joints at slip 0. Initially all of them stick.
 void Decider::ask() {
     asked_.assign(joints(), {});
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -138,7 +138,7 @@ void Decider::ask() {
             if (how.way != way) slide(j, way, false);
             continue;
         }
-        if (mode().leans[j] != 0) {  // wall and friction hold it together
+        if (mode().leans[j] != 0) {  // wall and friction hold the joint together
             how.way = Motion::stuck, how.riding = false;
             arrived_as = Motion::stuck;
             continue;
@@ -154,7 +154,7 @@ void Decider::ask() {
     }
 }
 
-/// Asks again and again, until each joint does what its torques let it do. Returns false if something is not finite.
+/// Repeats until the state of each joint agrees with its torques. Returns false if a value is not finite.
 bool Decider::settle(bool all_used) {
     const int most = 8 * static_cast<int>(joints()) + 16;
     for (int i = 0;; ++i) {
@@ -182,7 +182,7 @@ bool Decider::settle(bool all_used) {
     }
 }
 
-/// Lets joints that others hold together stand at slip 0 with them. Returns whether one of them slid.
+/// Makes joints whose bodies are held together by other joints ride at slip 0. Returns whether one of them was sliding.
 bool Decider::ride_along(const Frame& frame) {
     bool grown = false;
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -198,7 +198,7 @@ bool Decider::ride_along(const Frame& frame) {
     return grown;
 }
 
-/// Returns the joint that is farthest beyond its limit; what came to its limit right now is.
+/// Returns the joint that exceeds its limit the most. A joint seen to reach its limit at this instant takes precedence.
 std::optional<Decider::Worst> Decider::farthest_beyond() {
     std::optional<Worst> worst;
     double most_beyond = 0;
@@ -226,21 +226,21 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
     return worst;
 }
 
-/// The same for a joint that holds where loads may jump at slip 0, or at a slip that is rounding and stays so. If they
-/// drive it back from both sides, some value between both holds it (Filippov). But the loads at slip 0 count at a
-/// standstill: where they hold it, their limit is the only one, and where they do not, it leaves as soon as sliding
-/// friction does not drive it back. `may_go`: it was seen to come to its limit.
+/// Returns the excess of a sticking joint whose loads may jump at slip 0, or whose slip is rounding and stays so. If
+/// the loads of both sides drive the slip back, a mixture of them holds the joint (Filippov). At standstill the loads
+/// at slip 0 count first: if they hold the joint, only their limit matters; if not, it leaves as soon as sliding
+/// friction no longer drives it back. `may_go` says whether it was seen to reach its limit.
 double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, bool may_go) {
     Slipping& how = mode().friction[j];
     how.beside = 0, how.driven_back = false;
     if (!now().rubs(j) || mode().keeps_place(j) || how.way != Motion::stuck) return otherwise;
-    constexpr double later = 1e-9;  // of the unit of time
+    constexpr double later = 1e-9;  // in time units of the motion
     const double rounded = 64 * rounding * size(j) * by_.unit * joint_at(j).lightness(mechanics_.system().bodies);
     std::vector<double> soon = now().y;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
         const bool exact = speed != rounded;
-        how.driven_back = exact && stands(j);  // in motion, rounding says of which side the loads at slip 0 are
+        how.driven_back = exact && stands(j);  // in motion, rounding determines the side of the loads at slip 0
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
         const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
@@ -261,7 +261,7 @@ bool Decider::stands(std::size_t j) const {
     });
 }
 
-/// Returns none if something is not finite.
+/// Returns the loads on both sides of slip 0; empty if a value is not finite.
 std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, double speed, const Moment& here) {
     BothSides both;
     std::vector<double> y;
@@ -292,7 +292,7 @@ void Decider::let_go(const Worst& worst) {
     if (how.creeps != Motion::stuck) asked_[j].before.held = false;
     if (mode().leans[j] == 0) {
         slide(j, way, true);
-        // In a loop others may hold on, while this one gives all that it can.
+        // In a loop other joints may still hold while this one is at its limit.
         if (moves_as_one(j, frame())) how.riding = true, how.leaving = false;
         return;
     }
@@ -300,11 +300,11 @@ void Decider::let_go(const Worst& worst) {
     if (now().rubs(j) && how.way == Motion::stuck) {
         slide(j, way, true);
     } else if (now().rubs(j) && now().belt_sets_off(mechanics_, j)) {
-        how.way = Motion::stuck;  // it may go with the belt
+        how.way = Motion::stuck;  // it may move with the belt
     }
 }
 
-/// Takes back the first joint that was let go and would not go that way.
+/// Restores sticking for the first released joint that would not move in its direction.
 Decider::Ways Decider::take_back() {
     bool goes_round = false;
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -343,7 +343,7 @@ void Decider::report() {
     }
 }
 
-/// Reports what a joint at slip 0 does now, if it did something else.
+/// Reports the new state of a joint at slip 0 if it has changed.
 void Decider::report(std::size_t j) {
     const Slipping& how = mode().friction[j];
     const Motion way = how.riding ? Motion::stuck : how.way;
@@ -363,8 +363,8 @@ void Decider::report(std::size_t j) {
     }
 }
 
-/// Others hold its bodies together, so that it does not slip, and will not. Two that are held by belts of different
-/// velocities slip.
+/// Returns whether other joints hold its bodies together, so that it cannot slip. Two joints held by belts of different
+/// velocities do slip.
 bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = joint_at(joint);
     if (!frame.keeps(joint)) return false;
@@ -378,11 +378,11 @@ bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     };
     std::vector<double> belts(joints()), rates(joints());
     for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = belt(j), rates[j] = now().belt_slopes[j].rate;
-    constexpr double of_slopes = 1e-6;  // which are differences
+    constexpr double of_slopes = 1e-6;  // accuracy of the numerical slopes
     return alike(belts, 64 * rounding) && alike(rates, of_slopes);
 }
 
-/// A mass that comes to a stop beyond the limit of sticking by no more than the roundings of its way is at the limit.
+/// Moves a mass that stopped beyond the limit of sticking by no more than accumulated rounding to the limit.
 void Decider::settle_at_limit(std::size_t joint) {
     const Joint& own = joint_at(joint);
     const double before = std::exchange(memory().size_at_stop, size(joint));
@@ -410,14 +410,14 @@ void Decider::creep(std::size_t joint, Motion way, double pull) {
     memory().of[joint].creeping = event_at(mechanics_, now(), EventKind::stick, joint);
 }
 
-/// The torques of joints at slip 0 on their angles, within their limits, as a problem of least squares: G times
-/// the torques, plus slope, are the accelerations by which the joints slip.
+/// The problem for the torques of joints at slip 0: the slip accelerations are G times the torques plus `slope`, and
+/// each torque is between `low` and `high`.
 struct Decider::Box {
     Eigen::MatrixXd G;
     Eigen::VectorXd slope, low, high;
 };
 
-/// The box of these joints, which hold in the present mode. Returns false if something is not finite.
+/// Sets up the problem for these joints, which stick in the present mode. Returns false if a value is not finite.
 bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
     Balance found;
     if (!by_.balances.at_present(now(), frame(), by_.last, found)) return false;
@@ -443,15 +443,14 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
         torques(static_cast<Eigen::Index>(i)) = found.torques[i];
     }
     box.G = D.transpose() * lightness.asDiagonal() * D;
-    constexpr double little = 1e-10;  // what makes the smallest torques the solution
+    constexpr double little = 1e-10;  // regularisation that selects the smallest torques
     box.G.diagonal() += little * box.G.diagonal();
     box.slope += D.transpose() * lightness.cwiseProduct(torques);
     return true;
 }
 
-/// Decides all joints at slip 0 by the torques that solve the whole problem, if asking one after the other goes round.
-/// A joint that slips at the limit of holding has the torque of sliding, and the problem is solved again. The joint
-/// that came to its limit, if one did, is short of a little already.
+/// Decides all joints at slip 0 at once, if deciding one after another cycles. Sliding joints then have the sliding
+/// instead of the holding torque, and the problem is solved again. The limit of a released joint is lowered slightly.
 bool Decider::decide_together() {
     mode() = by_.room.entered;
     std::vector<std::size_t> held;
@@ -475,7 +474,7 @@ bool Decider::decide_together() {
             const std::size_t k = static_cast<std::size_t>(c), j = held[k];
             const bool at_limit = torque(c) <= box.low(c) || torque(c) >= box.high(c);
             if (slips[k] != 0 || !at_limit || !now().rubs(j) || mode().friction[j].way != Motion::stuck) continue;
-            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * size(j))) continue;  // others hold it, too
+            if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * size(j))) continue;  // other joints hold it as well
             slips[k] = 1, grown = true;
             const Moment here = now().here();
             if (mode().leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
@@ -490,11 +489,11 @@ bool Decider::decide_together() {
         if (mode().leans[j] != 0) mode().leans[j] = 0, memory().of[j].leaves_wall = true;
         if (!now().rubs(j)) continue;
         if (mode().friction[j].way == Motion::stuck) {
-            // A joint that can hold nothing is at both of its limits.
+            // A joint without friction is at both limits.
             slide(j, at_low && !(at_high && rate(c) < 0) ? Motion::forward : Motion::backward, true);
             gone.push_back(j);
         } else if (belt(j) == 0) {
-            mode().friction[j].way = Motion::stuck;  // it may go with the belt, which sets off
+            mode().friction[j].way = Motion::stuck;  // it may move with the belt, which starts to move
         }
     }
     for (const std::size_t j : gone) {
@@ -504,14 +503,14 @@ bool Decider::decide_together() {
     return true;
 }
 
-/// If joints that hold close loops, their torques do not follow from the motion. What they can hold together they do:
-/// the accelerations are the least that torques within their limits leave (Gauss), and of all such torques they have
-/// the smallest. A joint at its limit rides along, or slides when the others do not hold.
+/// Distributes the torques of sticking joints in closed loops, which the motion does not determine. They minimise the
+/// accelerations within their limits (Gauss), and among these solutions their own size. A joint at its limit rides
+/// along, or slides if the others do not hold.
 bool Decider::share_loops() {
     const std::vector<std::size_t> held = frame().sharing_of;
     Box box;
     if (!box_of(held, box)) return false;
-    Eigen::Index full = -1;  // the joint that came to its limit
+    Eigen::Index full = -1;  // index of the joint that reached its limit
     for (std::size_t c = 0; released_ && c < held.size(); ++c) {
         if (released_->joint == held[c]) full = static_cast<Eigen::Index>(c);
     }
@@ -527,8 +526,8 @@ bool Decider::share_loops() {
         if (full >= 0 && torque(full) <= lower(full)) torque(full) = box.low(full);
         if (full >= 0 && torque(full) >= higher(full)) torque(full) = box.high(full);
     };
-    // The joint at its limit rides from now on, and the others take the rest. Others may stand at a limit just now and
-    // leave it next: when they have room for a little more than the rest, nothing moves, and that little tells which.
+    // The released joint rides from now on, and the others take the rest of the torque. Others may be at their
+    // limit, too: the first attempt asks for a little more than the rest, which shows whether they can take it.
     share(little_more);
     if (!still) share(64 * rounding);
     for (Eigen::Index c = 0; c < torque.size(); ++c) {

@@ -1,4 +1,4 @@
-// The decision of contacts at slip 0: which of them hold, and which way the others slide.
+// The decision about contacts at slip 0: which of them stick, and in which direction the others slip.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,24 @@
 
 namespace dinal::motion::engine {
 
-/// Room for decisions, so that each need not allocate it.
+/// Storage for decisions, to avoid repeated allocation.
 struct DecisionRoom {
-    /// The knowledge of a decision about a joint.
+    /// What a decision knows about one joint.
     struct Asked {
-        bool asked = false;  ///< it is at slip 0
+        bool asked = false;  ///< whether the joint is at slip 0
         bool taken_back = false;
         contact::Before before = {};
-        model::Motion let_go = model::Motion::stuck;  ///< the way of what came to its limit at this instant, too
+        model::Motion let_go = model::Motion::stuck;  ///< direction of a joint that reached its limit at this instant
         int leant = 0;
-        double pull = 0;  ///< that let it go
+        double pull = 0;  ///< the pull at its release
     };
     std::vector<Asked> asked;
-    Mode entered;       ///< when the decision began
-    TorqueSizes sizes;  ///< when the decision began
+    Mode entered;       ///< mode at the start of the decision
+    TorqueSizes sizes;  ///< torques at the start of the decision
     Balance balance;
 };
 
-/// The parts of a run that a decision evaluates. None of them changes the motion.
+/// The parts of a run that a decision uses. None of them changes the motion.
 struct Evaluation {
     const Mechanics& mechanics;
     Frames& frames;
@@ -38,41 +38,43 @@ struct Evaluation {
     Projection& projection;
     const Segment& last;  ///< the stretch that ended now
     DecisionRoom& room;
-    double unit;  ///< of time
+    double unit;  ///< time scale of the motion
 };
 
 struct Cause {
-    /// A joint that was seen to come to its limit, and goes first.
+    /// A joint that reached its limit; it is released first.
     struct Released {
         std::size_t joint;
         model::Motion way;
     };
     std::optional<Released> released = {};
-    bool told = true;  ///< changes are events, as they are not at the start
+    bool told = true;  ///< whether changes are reported as events; false at the start
 };
 
-/// An event that a decision reports.
+/// An event reported by a decision.
 struct Told {
     model::Event event;
-    bool holds_again = false;  ///< a stick of a joint that was let go: with its slip at this instant it is no event
-    model::Motion slid = model::Motion::stuck;  ///< of a slip: the way in which it slid before it stuck; stuck: none
-    model::Motion way = model::Motion::stuck;   ///< of a slip: the way in which it slides now
-    double off = 0, size = 0;                   ///< of a slip: the change of its pull since then, and of its torques
+    /// whether a released joint sticks again, which cancels its slip event of the same instant
+    bool holds_again = false;
+    model::Motion slid = model::Motion::stuck;  ///< for a slip: direction of sliding before the stick; stuck: none
+    model::Motion way = model::Motion::stuck;   ///< for a slip: its direction
+    /// for a slip: change of the pull since the stick, and magnitude of the torques
+    double off = 0, size = 0;
 };
 
 struct Decision {
-    bool good = true;  ///< all that was evaluated is finite
-    Now now;           ///< the modes and velocities from now on
+    bool good = true;  ///< whether all evaluated values are finite
+    Now now;           ///< the new modes and velocities
     Contacts contacts;
     std::vector<Told> told = {};
 };
 
-/// Decides for all joints at slip 0 at once: what can hold holds; of those that can not, the one that is farthest
-/// beyond its limit goes, and the others are asked again; what would not go the way on which it was let go holds after
-/// all. The only place that knows the limits of friction at slip 0; the same arguments have the same decision.
+/// Decides about all joints at slip 0. All joints start as sticking; the one that exceeds its limit the most is
+/// released, and the rest is evaluated again. A released joint that would not move in its direction sticks again. This
+/// function is the only place that applies the friction limits at slip 0 to a system; it depends on its arguments only.
 Decision decide(const Evaluation& by, Now&& now, Contacts&& contacts, const Cause& cause);
 
-/// Returns the event of a joint or, for switches, a body.
+/// Makes the event of a joint or, if a relay switches, of a body.
 model::Event event_at(const Mechanics& mechanics, const Now& now, model::EventKind kind, std::size_t where,
                       int user = -1);
 

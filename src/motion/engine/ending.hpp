@@ -1,4 +1,4 @@
-// The end of a stretch: the first thing that happens in it.
+// The end of a stretch: the first event in it.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +9,22 @@
 
 namespace dinal::motion::engine {
 
-/// The kinds of what ends a stretch.
+/// Causes that end a stretch.
 enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, stays, condition };
 
 struct Ending {
-    double x = 1;  ///< the place in the stretch
+    double x = 1;  ///< point in the stretch, -1 to 1
     By by = By::nobody;
-    std::size_t which = 0;  ///< the joint, or the body of a relay
-    int side = 0;           ///< of a wall, a stop (0: it is left) or a corner, or the way of a release; or which relay
-    std::vector<std::size_t> users = {};  ///< events of the user at this instant, in the order written
-    std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};  ///< of functions that were read
-    bool blurred = false;  ///< one of them is clear of zero at the beginning, but for what rounds in the stretch
-    /// Events of the user and conditions that pass zero so near to a standstill or a release come after it.
+    std::size_t which = 0;  ///< index of the joint, or of the body of a relay
+    /// which wall, corner or direction of release; for an elastic wall 0 means it is left; the relay's index
+    int side = 0;
+    std::vector<std::size_t> users = {};  ///< user events at this instant, in the order of their definition
+    /// function and index of each condition that changes
+    std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};
+    /// whether some margin at the start exceeds the rounding there, but not that over the stretch
+    bool blurred = false;
+    /// Returns the latest point for user events and conditions. Those very close to a standstill or release count as
+    /// later.
     [[nodiscard]] double before() const {
         constexpr double beside_standstill = 1e-12;
         const bool at_standstill = by == By::slip || by == By::release || by == By::stays;
@@ -28,7 +32,7 @@ struct Ending {
     }
 };
 
-/// Passages that are so near to each other are one.
+/// Zeros closer than this count as simultaneous.
 inline constexpr double one_instant = 64 * rounding;
 
 }  // namespace dinal::motion::engine

@@ -1,4 +1,4 @@
-// The loop of a run: from one event to the next.
+// The main loop of the general engine, from one event to the next.
 #pragma once
 
 #include <memory>
@@ -24,7 +24,7 @@
 
 namespace dinal::motion::engine {
 
-/// Owns what a run is made of, and orders what happens. Each owner changes its own part only.
+/// Owns the parts of a run and calls them in order. Each part changes only its own data.
 class Engine {
 public:
     Engine(const Request& problem, Run& result);
@@ -65,7 +65,7 @@ private:
     void explain_end();
     std::string state_driven_back();
 
-    // The events that end stretches (events.cpp). Functions that return bool return false if the run is over.
+    // Events that end a stretch (events.cpp). The functions return false if the run is over.
     bool handle(const Ending& ending);
     bool come_to_a_stop(std::size_t joint);
     bool release(const Ending& ending);
@@ -86,7 +86,7 @@ private:
     void press(std::size_t joint, int side);
     void touch_walls();
 
-    // Impacts and acts (impacts.cpp).
+    // Impacts and user actions (impacts.cpp).
     struct Bounces {
         double once = model::never, all = model::never;
     };
@@ -106,13 +106,13 @@ private:
     bool goes_on() { return !chatter_.too_often(now_.t.hi) || fail(model::Outcome::chattering); }
     void tell(model::EventKind kind, std::size_t where) { recorder_->tell(now_, kind, where); }
     void project(Side when) { projection_.apply(now_, frames_->of(now_.mode), when); }
-    /// Contacts have no events at the start.
+    /// Returns whether the run is past its start; contacts have no events at the start.
     [[nodiscard]] bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
-    /// The joints behind these move bodies.
+    /// The number of joints without the last ones, which impose prescribed motions.
     [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
     [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
-    /// Returns the size of the torques on the angle of a joint, now.
+    /// Returns the magnitude of the present torques on the angle of a joint.
     [[nodiscard]] double torque_size(std::size_t joint) {
         sizes_.find(mechanics_, segment_, now_.here());
         return sizes_.on(joint_at(joint));
@@ -127,7 +127,7 @@ private:
     Now now_;
     Contacts contacts_;
     Segment segment_;  ///< the last stretch
-    // The owners.
+    // The parts.
     Walls walls_;
     Pace pace_;
     Chatter chatter_;
@@ -135,19 +135,19 @@ private:
     Projection projection_;
     Impulses impulses_;
     UserEvents users_;
-    std::vector<Half> normal_halves_;  ///< of each joint, for the guards
+    std::vector<Half> normal_halves_;  ///< state of each joint's normal load, for the guards
     std::optional<Frames> frames_;
     std::unique_ptr<Flow> solver_;
     std::optional<Conditions> conditions_;
     std::optional<Balances> balances_;
     std::optional<Recorder> recorder_;
     std::optional<PlainSteps> plain_steps_;
-    // Room, so that a stretch need not allocate it.
+    // Storage that is reused, to avoid allocation in each stretch.
     DecisionRoom room_;
     TorqueSizes sizes_;
     struct {
         std::vector<double> departing;
-        Mode before;  ///< the decision
+        Mode before;  ///< mode before a decision
         struct {
             std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
         } standing;

@@ -54,10 +54,10 @@ bool Engine::handle(const Ending& ending) {
     return true;
 }
 
-/// The slip of a joint has come to 0, or has passed it as its belt jumped.
+/// Handles a slip that has reached 0, or passed it because the belt jumped.
 bool Engine::come_to_a_stop(std::size_t j) {
     const double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.y[n()]);
-    // A slip that passed zero because the belt jumped has not come to a standstill.
+    // A slip that passed zero because the belt jumped is not a standstill.
     constexpr double clearly = 1e-6;
     if (mechanics_.has_belt(j) && std::fabs(now_.slip(mechanics_, j)) > clearly * fastest && now_.mode.leans[j] == 0) {
         return restart_contacts(Because::belt) && goes_on();
@@ -69,7 +69,7 @@ bool Engine::come_to_a_stop(std::size_t j) {
         const double size = std::max(fastest, std::fabs(first.by) * greatest(segment_.y[n() + first.body]));
         if (i == j || std::fabs(now_.slip(mechanics_, i)) <= 64 * rounding * size) contacts_.of[i].arrived = how.way;
     }
-    if (now_.mode.leans[j] != 0) {  // the belt turns along a mass at a wall
+    if (now_.mode.leans[j] != 0) {  // the belt reverses under a mass at a wall
         contacts_.slide(mechanics_, now_, j,
                         now_.mode.friction[j].way == Motion::forward ? Motion::backward : Motion::forward, true);
         contacts_.of[j].arrived = Motion::stuck;
@@ -77,7 +77,7 @@ bool Engine::come_to_a_stop(std::size_t j) {
     return decide(true) && goes_on();
 }
 
-/// A joint has come to its limit.
+/// Handles a joint that has reached its limit.
 bool Engine::release(const Ending& ending) {
     const std::size_t j = ending.which;
     Mode& before = scratch_.before;
@@ -88,12 +88,12 @@ bool Engine::release(const Ending& ending) {
         const Slipping &is = now_.mode.friction[i], &was = before.friction[i];
         same = is.way == was.way && is.riding == was.riding && is.creeps == was.creeps;
     }
-    // A joint that only touched its limit must pass it clearly the next time.
+    // A joint that only touched its limit must exceed it clearly next time.
     if (same && Chatter::too_blunt(now_.mode.friction[j], torque_size(j))) return fail(Outcome::chattering);
     return goes_on();
 }
 
-/// An elastic wall begins to be pressed, or is left.
+/// Handles the beginning or end of contact with an elastic wall.
 bool Engine::meet_stop(const Ending& ending) {
     const std::size_t j = ending.which;
     const model::Walls& stops = *problem_.system.joints[j].stops;
@@ -110,7 +110,8 @@ bool Engine::meet_stop(const Ending& ending) {
 bool Engine::turn_slider(const Ending& ending) {
     const std::size_t j = ending.which;
     if (static_cast<Motion>(ending.side) == Motion::stuck) {
-        // The rest of its slip, and of its spring beyond its limit, is rounding: it would slide again at once.
+        // The remaining slip and excess of the spring are rounding: without this the slider would slide again at
+        // once.
         const Mechanics::Slider& own = mechanics_.sliders()[j];
         const model::Weight& first = problem_.system.joints[own.joint].of.front();
         now_.y[n() + first.body] -= now_.slip(mechanics_, own.joint) / first.by;
@@ -120,7 +121,7 @@ bool Engine::turn_slider(const Ending& ending) {
     return decide(true) && goes_on();
 }
 
-/// Applies the decision of contacts, and reports it.
+/// Applies the decision about contacts and reports it.
 bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     const Evaluation by{mechanics_, *frames_, *balances_, projection_, segment_, room_, pace_.unit};
     const Cause cause{released, told && begun()};
@@ -130,10 +131,11 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     return made.good || fail(Outcome::excitation_not_finite);
 }
 
-/// Neither now nor a little later: a load that only touches zero opens nothing, nor does one that is no number.
+/// Returns whether the normal load is zero or negative now and slightly later. A load that only touches zero, or is not
+/// finite, opens nothing.
 bool Engine::nothing_presses(std::size_t joint) const {
     constexpr double later = 1e-9;
-    // At the zero of the load its value may still be rounding.
+    // At its zero the load may still be positive by rounding.
     if (normal_halves_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
     std::vector<double> y = now_.y;
     const double h = later * pace_.unit;
@@ -141,7 +143,8 @@ bool Engine::nothing_presses(std::size_t joint) const {
     return mechanics_.pressing(joint, {now_.t.hi + h, Side::at, y}) <= 0;
 }
 
-/// A contact on which nothing presses is open: it neither sticks nor slips. True when one has opened or closed.
+/// Opens contacts that nothing presses together, which then neither stick nor slip, and closes others. Returns whether
+/// any has changed.
 bool Engine::open_and_close() {
     bool changed = false;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -163,14 +166,15 @@ bool Engine::open_and_close() {
         if (!opens && std::fabs(now_.slip(mechanics_, j)) > 16 * rounding * fastest) {
             contacts_.slide(mechanics_, now_, j, model::motion_of(now_.slip(mechanics_, j)), false);
         } else if (!opens && now_.mode.leans[j] == 0) {
-            contacts_.slide(mechanics_, now_, j, Motion::forward, true);  // if it sticks from now on, that is told
+            // if it sticks from now on, a stick is reported
+            contacts_.slide(mechanics_, now_, j, Motion::forward, true);
         }
         if (begun()) tell(opens ? EventKind::opened : EventKind::closed, j);
     }
     return changed;
 }
 
-/// After velocities were changed at once, by an impact at a joint, a user, or the jump of a belt: how each slides now.
+/// Updates all contacts after a jump of velocities, caused by an impact at the joint `at`, a user's action or a belt.
 bool Engine::restart_contacts(Because why, std::size_t at) {
     open_and_close();
     const std::vector<double> caught = catch_freewheels();
@@ -190,7 +194,7 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
     if (std::fabs(s) <= corner) {
         if (how.way == Motion::stuck || how.riding) return;
         if (why == Because::act) {
-            how.leaving = true;  // what a user stopped did not come to a standstill of its own
+            how.leaving = true;  // a joint stopped by a user's action did not come to rest by itself
         } else {
             contacts_.of[j].arrived = how.way;
         }
@@ -205,20 +209,21 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
         if (!held && why == Because::belt) tell(EventKind::turn, j);
         contacts_.slide(mechanics_, now_, j, way, false);
     } else if (const model::Friction& law = problem_.system.joints[j].friction.law; law.ranges() > 0) {
-        const model::SpeedRange range = law.range(how.range);  // the speed may have jumped out of it
+        const model::SpeedRange range = law.range(how.range);  // the speed may have jumped out of the range
         const double speed = std::fabs(s);
         if (speed < range.from - corner || speed > range.to + corner) contacts_.slide(mechanics_, now_, j, way, false);
     }
 }
 
-/// Returns the slip of a joint that counts as zero after velocities have jumped.
+/// Returns the slip of a joint that counts as zero after a jump of velocities.
 double Engine::rounding_of_slip(std::size_t j, Because why) const {
     const double belt = mechanics_.belt(j, now_.t.hi, now_.side());
     const bool weighted = problem_.system.joints[j].is_weighted();
     const double known = weighted ? mechanics_.speed_scale(j, now_.y) : std::fabs(mechanics_.velocity(j, now_.y));
     double corner = 4 * rounding * (known + std::fabs(belt));
     if (why == Because::belt && mechanics_.has_belt(j)) {
-        // If the belt only turns a corner, its values differ by rounding, and by its change in a hair of time.
+        // If the belt has only a corner, its values on both sides differ by rounding and by its change over the tiny
+        // time step.
         double rate = std::fabs(now_.belt_slopes[j].rate);
         if (!segment_.belt_rates.empty()) rate = std::max(rate, std::fabs(segment_.belt_rates[j][node_count - 1]));
         corner = 16 * corner + rate * 64 * rounding * std::fabs(now_.t.hi);
@@ -226,7 +231,7 @@ double Engine::rounding_of_slip(std::size_t j, Because why) const {
     return corner;
 }
 
-/// Elastic walls that are pressed after the state was set, or velocities have jumped. Whether one has changed.
+/// Updates the contact with elastic walls after a jump of the state. Returns whether any has changed.
 bool Engine::press_stops() {
     bool changed = false;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -253,7 +258,7 @@ bool Engine::press_stops() {
     return changed;
 }
 
-/// The energy that an elastic wall stores when it is left is lost.
+/// Begins or ends contact with an elastic wall. The energy stored in the wall at the end is lost.
 void Engine::press(std::size_t joint, int side) {
     const model::Walls& stops = *problem_.system.joints[joint].stops;
     const int wall = side != 0 ? side : now_.mode.presses[joint];
@@ -272,7 +277,7 @@ void Engine::let_slide(std::size_t slider, Motion way) {
     tell(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, own.joint);
 }
 
-/// After velocities have jumped: sliders whose slip has turned stick.
+/// Makes sliders stick whose slip has reversed in a jump of velocities. Returns whether there were any.
 bool Engine::turn_sliders() {
     bool turned = false;
     for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
@@ -344,7 +349,7 @@ double Engine::stop_together(const std::vector<char>& joints) {
     return lost;
 }
 
-/// A joint that stands at a wall, and does not move away from it, leans there.
+/// Makes joints lean that are at a wall and do not move away from it.
 void Engine::touch_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];

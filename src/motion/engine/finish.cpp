@@ -29,7 +29,7 @@ void Engine::finish() {
     result_.located = conditions_->any();
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
     result_.noise = lost ? 0 : solver_->noise().clear(problem_.tolerance);
-    Walls::keep_within(problem_.system, now_.y);  // beside a wall its distance has digits that theta has not
+    Walls::keep_within(problem_.system, now_.y);  // near a wall the stored distance has digits that theta lacks
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.t.hi;
     auto carry = std::make_shared<Carry>();
@@ -41,7 +41,7 @@ void Engine::finish() {
     recorder_->finish(now_, contacts_, std::move(carry));
 }
 
-/// Returns how the run stands at its end, if nothing moves.
+/// Returns the outcome if nothing moves at the end, otherwise empty.
 std::optional<Outcome> Engine::at_rest() {
     const Frame& present = frames_->of(now_.mode);
     bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
@@ -58,14 +58,14 @@ std::optional<Outcome> Engine::at_rest() {
     return for_good ? Outcome::at_rest : Outcome::stuck_at_end;
 }
 
-/// The run got nowhere: if something that acts in it is rough on every scale, that is why.
+/// Reports a function that is rough on every scale as the cause of a run that could not advance.
 void Engine::explain_end() {
     const double most = std::min({pace_.unit, problem_.window.end - now_.t.hi, breaks_.shortest_delay()});
     const double from = now_.t.hi, length = std::min(rough_stretch * pace_.unit, most / 8);
     struct Source {
         std::string name;
         std::function<double(double)> value;
-        double beside;  ///< how great is what it is added to
+        double beside;  ///< magnitude of the quantity to which it is added
     };
     std::vector<Source> sources;
     const auto of = [&](const char* what, const std::string& who) {
@@ -104,7 +104,8 @@ void Engine::explain_end() {
     outcome_ = Outcome::chattering;
 }
 
-/// The name of a state that has come to where its rate jumps, and drives it back from both sides; empty where none has.
+/// Returns the name of a state that is stuck where its rate jumps, because both sides drive it back; empty if there is
+/// none.
 std::string Engine::state_driven_back() {
     constexpr double near = 1e-9, steep = 1e6;
     mechanics_.for_each_piecewise(now_.t.hi, [](Piecewise& function) { function.let_go(); });

@@ -11,10 +11,10 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double gross = 1e3;  // not resolved by more than this factor: it may be a break
-/// The widest gaps between nodes, by the node before. Users' functions are asked in the middle of these, too.
+constexpr double gross = 1e3;  // a stretch unresolved by more than this factor may contain a break
+/// The nodes before the widest gaps. Users' functions are also sampled in the middle of these.
 constexpr std::array<std::size_t, 3> looked_into{7, 8, 9};
-/// In units of the longest stretch: on one shorter than this no pulse can hide.
+/// A fraction of the longest stretch: a shorter one cannot hide a pulse.
 constexpr double too_short_to_look = 1e-6;
 
 }  // namespace
@@ -42,7 +42,7 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     const Attempt attempt = find(s, mode, frame, departing);
     const std::size_t groups = frame.groups();
     if (attempt != Attempt::resolved) {
-        // Rates that kept it from being found may be noise.
+        // The unresolved rates may be noise, so they are kept for its detection.
         for (std::size_t k = 0; k < m_; ++k) s.f[2 * n_ + k] = found_[groups + k];
         return attempt;
     }
@@ -61,7 +61,7 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     return accept(s, mode, frame);
 }
 
-/// Between the nodes nothing may happen that was not seen at them.
+/// Checks that nothing happens between the nodes that the nodes do not show.
 Flow::Attempt Flow::look_between(Segment& s, const Mode& mode, const Frame& frame) {
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
@@ -92,13 +92,13 @@ void Flow::make_room(Segment& s) const {
     s.holding_series.resize(mechanics_.joints());
 }
 
-/// The torque of a joint that holds must be as accurate as the motion if it is compared with a limit, or if a belt
-/// moves the body by it.
+/// Returns whether the torque of a sticking joint is compared with a limit, or moves the body by a belt. It must then
+/// be as accurate as the motion.
 bool Flow::is_compared(std::size_t joint, const Mode& mode) const {
     return mode.holds(joint) && (mode.rigid[joint] == 0 || mechanics_.has_belt(joint));
 }
 
-/// All that depends on the time alone. False when one of the user's functions has failed.
+/// Evaluates everything that depends on time alone. Returns false if a user's function has failed.
 bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin) {
     const std::size_t joints = mechanics_.joints();
     make_room(s);
@@ -132,7 +132,7 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
             return false;
         }
         fastest_.belts[joint] = std::max(fastest_.belts[joint], greatest(s.belts[joint]));
-        // On a segment so short its values tell no slope any more.
+        // On such a short segment the belt's values do not determine its slope.
         constexpr double too_short_for_slopes = 1e-7, stretch = 1e-4;
         if (2 * s.h < too_short_for_slopes * longest_) {
             const double within = std::min(stretch * longest_, (mechanics_.next_break(s.start.hi) - s.start.hi) / 2);
@@ -156,8 +156,9 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     return true;
 }
 
-/// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the motion
-/// are asked at `departing` where that is given, else at the motion of the segment.
+/// Computes torques and rates at the nodes from `first` up to but excluding `end`, and the accelerations of the groups.
+/// Functions of the motion are evaluated at the state `departing` at the first node, if given, otherwise at the motion
+/// of the segment.
 template <class First, class End>
 bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First first, End end,
                          const std::vector<double>* departing) {
@@ -189,7 +190,7 @@ bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First
                 torque[j] = mechanics_.joint_torque(joint, at, mode, s.belts[joint][j]);
             });
         }
-        // The stiffness sees the digits of the motion that the rounding of the angles has cut off.
+        // The stiffness acts on the unrounded displacement.
         for (const auto& [body, by] : own.of) {
             const double k = by * own.stiffness;
             if (k == 0) continue;
@@ -262,11 +263,11 @@ void Flow::find_sizes_at_start(const Segment& s, const std::vector<double>& begi
     }
 }
 
-/// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the
-/// last one are added to those that they equal at the nodes.
+/// Fits the series of the motion by integrating those of the accelerations, which is cheaper than a fit of velocities
+/// and angles. Terms beyond degree 16 are folded onto the terms that are equal at the nodes.
 void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>& begin) {
     const bool integrated = follows_rates() && !mechanics_.has_belts();
-    if (integrated && unknown_.empty()) {  // all stands
+    if (integrated && unknown_.empty()) {  // nothing moves
         for (std::size_t k = 0; k < s.y.size(); ++k) s.rates[k] = s.series[k] = {};
         return;
     }
@@ -287,7 +288,7 @@ void Flow::fit_series(Segment& s, const Frame& frame, const std::vector<double>&
     }
 }
 
-/// Finds the torques of the joints that hold, and the series of those that are compared with a limit.
+/// Computes the torques of sticking joints, and the series of those that are compared with a limit.
 void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) {
     if (frame.edges.empty()) return;
     room_.lacking.resize(n_);
@@ -305,9 +306,8 @@ void Flow::find_holding(Segment& s, const Mode& mode, const Frame& frame) {
 
 namespace {
 
-/// Returns the factor by which a stretch with this series may be longer and still be resolved. The coefficients fall by
-/// some factor per degree until all that follow are below `allowed`, and a longer stretch divides this factor. If the
-/// last coefficients promise more, they decide.
+/// Returns the factor by which a stretch with this series may be longer and still be resolved. The estimate uses the
+/// average decay of the coefficients down to `allowed`, or the last coefficients if these permit more.
 double longer_by(const Series& series, double allowed) {
     std::size_t d = cheb::degree;
     while (d > 1 && std::fabs(series[d - 1]) <= allowed) --d;
@@ -317,7 +317,7 @@ double longer_by(const Series& series, double allowed) {
     return std::max(by_decay, std::pow(allowed / tail, 1.0 / cheb::degree));
 }
 
-/// Returns the time of a stretch that is farthest from 0.
+/// Returns the greatest |t| of a stretch.
 double late(const Segment& s) {
     return std::max(std::fabs(s.start.hi), std::fabs(s.end));
 }
@@ -328,8 +328,8 @@ double of_others(const std::vector<double>& by_others, std::size_t k) {
 
 }  // namespace
 
-/// The noise of what moves a value makes all rough that this value acts on: of each group and state, how much by h.
-/// Nothing where there is no noise.
+/// The noise that acts on each group and state through the quantities it depends on, times h. Empty if there is no
+/// noise.
 std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
     const Eigen::MatrixXd* const slopes = newton_.slopes(frame);
@@ -348,7 +348,7 @@ std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const 
     return rough;
 }
 
-/// The last coefficients of what drives each value, against what that value is and how it changes.
+/// Compares the last coefficients of each acceleration and rate with the allowed error.
 void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     unresolved_ = 0, growth_ = model::never;
     allowed_.assign(n_, 0);
@@ -370,7 +370,7 @@ void Flow::note(const Segment& s, const Series& series, double scale, double all
     if (s.may_grow) growth_ = std::min(growth_, longer_by(series, allowed / scale));
 }
 
-/// Returns what the loads of a body may be off by because times far from t = 0 are rounded.
+/// Returns the possible error of a body's loads due to the rounding of times far from t = 0.
 double Flow::lost_of_loads(const Segment& s, std::size_t body) const {
     double sum = 0;
     for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
@@ -407,7 +407,7 @@ void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<
 }
 
 void Flow::judge_joints(const Segment& s, const Mode& mode) {
-    double held = 0;  // what rigid joints pass on
+    double held = 0;  // torque that rigid joints transmit
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
     }
@@ -419,7 +419,8 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
             note(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
-                const double most = greatest(s.limits[joint][way]) + torques;  // it is compared with these
+                // the limit is compared with these torques
+                const double most = greatest(s.limits[joint][way]) + torques;
                 const double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
                 note(s, limit, 1, allowed);
@@ -436,7 +437,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
 
 void Flow::judge_states(const Segment& s, const Frame& frame, const std::vector<double>& by_others) {
     const double h = s.h;
-    double rough = 0;  // what noise in M may be of what it moves
+    double rough = 0;  // relative noise of M, which also makes the states rough
     for (std::size_t i = 0; i < n_; ++i) {
         rough =
             std::max(rough, noise_.floor().noise[i] / (std::max(sizes_.all[i], noise_.floor().greatest[i]) + smallest));
@@ -474,7 +475,7 @@ double Flow::blurred_by_belts(const Segment& s) const {
     return inertia * (256 * rounding * fastest + fastest_.lost_by_belts) / s.h;
 }
 
-/// Right before a body turns, where it is farthest: a spring or a law of friction may act there for a short while.
+/// Adds points just before a body turns, where a spring or friction law may act for a very short time only.
 void Flow::add_turns(const Segment& s, std::vector<double>& places) const {
     constexpr double before = 1e-9;
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
@@ -493,7 +494,7 @@ void Flow::add_turns(const Segment& s, std::vector<double>& places) const {
                                             sign * velocity[j + 1], before / 4)
                                  .first -
                              before);
-            if (!joint.friction.none()) break;  // beyond a stop there is another motion
+            if (!joint.friction.none()) break;  // beyond a stop the motion is different
         }
     }
 }
@@ -503,7 +504,7 @@ double Flow::gap(const Segment& s) const {
     return 2 * s.h * (2 * s.h > too_short_to_look * longest_ ? widest_left : cheb::widest_gap);
 }
 
-/// Asks between the nodes. A pulse of a function may be there that no node has met, or a bend of a law.
+/// Compares functions and laws with their polynomials between the nodes, to find a pulse or corner that no node shows.
 bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame) {
     constexpr double clearly = 64;
     if (2 * s.h <= too_short_to_look * longest_) return true;
@@ -565,7 +566,7 @@ std::optional<double> Flow::found_break(const Segment& s) const {
         if (!found || !(*found <= s.end) || s.start.until(*found) < 1e-6 * s.h) return;
         if (!first || *found < *first) first = *found;
     };
-    // Functions of the motion are evaluated at one fixed state, so that only jumps in time are found.
+    // Functions of the motion are evaluated at one fixed state, so that only jumps in time count.
     const auto of_motion = [&](const Signal& signal, double t, Side side) {
         return signal.samples_the_motion() ? signal.of_motion({t, side, begin}) : 0;
     };
@@ -619,7 +620,7 @@ std::optional<double> Flow::jump_of_belt(const Segment& s, std::size_t joint) co
     const double seen = clearly * std::max(fastest_.belts[joint], greatest(belts));
     const auto [least, most] = std::minmax_element(belts.begin(), belts.end());
     const double change = *most - *least;
-    std::size_t first = 1;  // of the greatest differences
+    std::size_t first = 1;  // index of the greatest difference
     const auto difference = [&](std::size_t j) { return std::fabs(belts[j] - belts[j - 1]); };
     for (std::size_t j = 2; j < node_count; ++j) {
         if (difference(j) > 2 * difference(first)) first = j;
@@ -629,7 +630,7 @@ std::optional<double> Flow::jump_of_belt(const Segment& s, std::size_t joint) co
     const std::size_t from = std::max<std::size_t>(first, 2) - 2;
     const auto found = find_break(std::span(s.times).subspan(from, 3), std::span(belts).subspan(from, 3), belt);
     if (!found || !(*found > s.start.hi)) return {};
-    // A jump of noise is no greater than the differences beside it.
+    // A jump caused by noise is no greater than the neighbouring differences.
     const double right_before = std::min(std::nextafter(*found, -model::never), *found - nearest_jump * s.h);
     const double before = belt(std::max(right_before, s.start.hi)), after = belt(*found);
     const double jump = std::fabs(after - before);
@@ -653,7 +654,7 @@ void Flow::stand_still(Segment& s, const std::vector<double>& y) const {
     for (Series& held : s.holding_series) held = {};
 }
 
-/// Nothing that happens here can be seen: all goes on as it begins.
+/// Extrapolates over a stretch that is too short to matter.
 void Flow::pass_over(Segment& s) const {
     s.proven = true;
     for (std::size_t k = 0; k < s.y.size(); ++k) {

@@ -1,4 +1,5 @@
-// The motion of a system on a stretch in one mode: one interface for all methods, and what they have in common.
+// Computes the motion of a system over one stretch in one mode. This is the interface of all methods, and their common
+// part.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,7 +19,7 @@
 
 namespace dinal::motion::engine {
 
-/// A method finds the motion at the nodes of a stretch, and says how well. All that follows from that is the same.
+/// A method computes the motion at the nodes of a stretch and estimates its error. The rest is common to all methods.
 class Flow {
 public:
     enum class Attempt { resolved, shorten, failed };
@@ -26,64 +27,64 @@ public:
     Flow(const Flow&) = delete;
     Flow& operator=(const Flow&) = delete;
 
-    /// From `start` to `end`, 2 h later. Functions of the motion are asked at `departing` at its beginning. failed:
-    /// something is not finite at bad_time().
+    /// Computes the motion from `start` to `end` = start + 2 h. At the start, functions of the motion are evaluated at
+    /// `departing`. The result is `failed` if a value is not finite, at bad_time().
     Attempt solve(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                   const std::vector<double>& departing);
-    /// The stretch is used up to a place only: functions are proven there if they were not on the whole of it. Returns
-    /// false if one hides something. Not for steps, which prove nothing.
+    /// Proves, for a stretch that is used up to the point x only, that functions do nothing else there. Returns false
+    /// if one does. Not for Runge-Kutta steps, which prove nothing.
     bool hides_nothing_until(double x, Segment& segment, const Mode& mode);
     [[nodiscard]] double bad_time() const { return bad_time_; }
-    /// Over 1: by how much the last one was not resolved.
+    /// The error of the last stretch over the allowed one, scaled as if of order 16; at most 1 if it is resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
-    /// The factor by which the next stretch may be longer than the last one, which was resolved, if one may.
+    /// The factor by which the next stretch may be longer than the last resolved one.
     [[nodiscard]] double growth() const { return growth_; }
-    /// The last one was not resolved because of noise, which need not be smoother from now on.
+    /// Returns whether the last stretch was unresolved because of noise, which is tolerated from now on.
     bool found_noise(const Segment& segment, const Mode& mode) {
         return noise_.found(segment, mode, tolerance_, sizes_.all, proofs_);
     }
-    /// All that acts is known between doubles of the time, too, and no stretch is too short for it.
+    /// Returns whether all loads can be evaluated between two doubles of the time, so that no stretch is too short.
     [[nodiscard]] bool tells_rests() const {
         return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
     [[nodiscard]] const Noise& noise() const { return noise_; }
     void know(const Floor& floor) { noise_.know(floor); }
-    /// The possible error of a body's velocity on a stretch that was resolved.
+    /// The possible error of a body's velocity at the end of a resolved stretch.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
     }
-    /// The longest time between two looks at a function of the time in a stretch.
+    /// The longest time between two samples of a function of time in a stretch.
     [[nodiscard]] virtual double gap(const Segment& segment) const;
-    /// The time at which a function of the time breaks in the last one; none if none does.
+    /// The time of a break of a function of time in the last stretch; empty if there is none.
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
-    /// The belt of a joint has clearly different velocities before and at this time.
+    /// Returns whether the belt of a joint clearly jumps at this time.
     [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
     /// The time of an undeclared jump of the belt of a joint in a stretch; none if there is only noise.
     [[nodiscard]] std::optional<double> jump_of_belt(const Segment& segment, std::size_t joint) const;
-    /// All stand where they are, for any length of time.
+    /// Lets everything stand still over the stretch, however long it is.
     void stand_still(Segment& segment, const std::vector<double>& y) const;
-    /// A stretch too short to matter is a straight line.
+    /// Extrapolates the motion linearly over a stretch that is too short to matter.
     void pass_over(Segment& segment) const;
-    /// The possible error of torques that results from the slopes of belts, which are differences.
+    /// The possible error of torques due to the numerical slopes of belts.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
-    /// The limits of what sticks, where they change.
+    /// Computes the holding limits of sticking joints if they vary.
     void find_limits(Segment& segment, const Mode& mode) const;
 
 protected:
     Flow(const Mechanics& mechanics, double tolerance, double longest);
-    /// Finds the accelerations of groups and the rates of states at the nodes, and the motion there.
+    /// Computes the accelerations of groups, the rates of states and the motion at the nodes.
     virtual Attempt find(Segment& segment, const Mode& mode, const Frame& frame,
                          const std::vector<double>& departing) = 0;
-    /// Judges what was found.
+    /// Checks the error of the result.
     virtual Attempt accept(Segment& segment, const Mode& mode, const Frame& frame) = 0;
-    /// The motion at the nodes is the integral of the rates there.
+    /// Returns whether the motion at the nodes is the integral of the rates there.
     [[nodiscard]] virtual bool follows_rates() const = 0;
 
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
                   const std::vector<double>* departing) {
         return evaluate_part(segment, mode, frame, first, end, departing);
     }
-    /// The same at all nodes, at the motion of the segment.
+    /// Evaluates all nodes at the motion of the segment.
     bool evaluate(Segment& segment, const Mode& mode, const Frame& frame) {
         constexpr std::integral_constant<std::size_t, 0> first;
         constexpr std::integral_constant<std::size_t, node_count> end;
@@ -98,18 +99,19 @@ protected:
     std::size_t n_, m_;
     double unresolved_ = 0, growth_ = 1;
     struct {
-        std::vector<double> belts, rates;  ///< so far
-        double lost_by_belts = 0;          ///< of the velocities of belts on the last stretch, because t is rounded
+        std::vector<double> belts, rates;  ///< greatest so far
+        double lost_by_belts = 0;          ///< error of belt velocities on the last stretch due to the rounding of t
     } fastest_;
     Noise noise_;
     Newton newton_;
     struct {
         std::vector<Nodes> velocities, rates, ways;
-    } offsets_;                           ///< of each body against its group
-    std::vector<Nodes> unknown_, found_;  ///< accelerations of the groups and rates, and new ones
+    } offsets_;  ///< motion of each body relative to its groups
+    /// accelerations of the groups and rates of the states, and their recomputed values
+    std::vector<Nodes> unknown_, found_;
     struct {
         std::vector<double> all, at_start;
-    } sizes_;  ///< of the torques on each body
+    } sizes_;  ///< magnitude of the torques on each body
 
 private:
     template <class First, class End>
@@ -129,26 +131,26 @@ private:
     bool hides_nothing(Segment& segment, const Mode& mode, double until);
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
-    /// Returns how great the torques on the angle of a joint are, from those on its bodies.
+    /// Returns the magnitude of the torques on the angle of a joint.
     [[nodiscard]] double size_at(std::size_t joint) const;
     [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
 
-    bool tells_rests_ = true;  ///< the loads
+    bool tells_rests_ = true;  ///< whether all loads can be evaluated between two doubles of the time
     double bad_time_ = 0;
-    std::vector<double> allowed_;  ///< of each body's acceleration
+    std::vector<double> allowed_;  ///< allowed error of each body's acceleration
     Proofs proofs_;
-    /// Room, so that a stretch need not allocate it.
+    /// Storage that is reused, to avoid allocation in each stretch.
     struct {
         std::vector<double> torque, load, belt, rate;
         std::vector<Nodes> lacking;
-        std::array<std::vector<double>, node_count> points;  ///< all of y at a node
+        std::array<std::vector<double>, node_count> points;  ///< the state y at each node
     } room_;
 };
 
-/// Noise at single nodes is up to so many times its last coefficients.
+/// The ratio of noise at single nodes to the last coefficients.
 inline constexpr double of_tail = 8;
 
-/// Returns the weighted sum of what the groups have that move a body.
+/// Returns the weighted sum over the groups that move a body.
 template <class Value>
 double sum_of_groups(const Frame::Shape& shape, const Value& value) {
     double sum = 0;

@@ -5,7 +5,7 @@
 
 namespace dinal::motion::engine {
 
-/// Returns 0 where there are more joints than it can tell apart.
+/// A compact key of the mode; 0 if there are too many joints for it.
 std::uint64_t Frames::short_key(const Mode& mode) const {
     constexpr std::size_t bits = 3, most = 64 / bits;
     const std::size_t joints = mechanics_.joints();

@@ -1,4 +1,4 @@
-// The frames of a run: one for each set of joints that hold, made once.
+// The cache of frames of a run: one for each set of sticking joints.
 #pragma once
 
 #include <array>
@@ -11,26 +11,26 @@
 
 namespace dinal::motion::engine {
 
-/// Knows no time and no motion: a frame follows from the mode alone.
+/// A frame depends on the mode only, not on time or motion.
 class Frames {
 public:
-    /// `longest`: the longest stretch that was allowed; `otherwise` that of a system without springs.
+    /// `longest` limits stretches; `otherwise` replaces it for systems without springs.
     Frames(const Mechanics& mechanics, double longest, double otherwise)
         : mechanics_(mechanics), longest_(longest), otherwise_(otherwise) {}
 
-    /// Returns the frame of a mode. The reference is valid until some hundred other frames were made.
+    /// Returns the frame of a mode. The reference stays valid until some hundred other frames have been made.
     [[nodiscard]] const Frame& of(const Mode& mode);
 
 private:
     [[nodiscard]] std::uint64_t short_key(const Mode& mode) const;
 
-    using Key = std::pair<std::vector<char>, std::vector<int>>;  ///< the joints that hold, and at which walls
+    using Key = std::pair<std::vector<char>, std::vector<int>>;  ///< sticking joints, and walls at which joints lean
 
     const Mechanics& mechanics_;
     double longest_, otherwise_;
     std::map<Key, Frame> frames_, older_;
     Key last_key_;
-    /// The last two, which alternate at the stops of a body: by a number that tells the modes of a few joints apart.
+    /// The last two frames with their compact keys; two modes alternate at the stops of a body.
     struct Recent {
         std::uint64_t key = 0;
         const Frame* frame = nullptr;
@@ -38,7 +38,7 @@ private:
     std::array<Recent, 2> recent_{};
 };
 
-/// Stretches of a linear system are no longer than this part of its shortest period.
+/// The longest stretch of a linear system as a fraction of its shortest period.
 inline constexpr double longest_in_periods = 0.6;
 
 }  // namespace dinal::motion::engine

@@ -9,8 +9,8 @@ namespace dinal::motion::engine {
 using model::Joint;
 using model::Motion;
 
-/// In this order they are watched, for one joint after the other, and go if they come to the same place. Conditions and
-/// the user's events come last, because they wait for a standstill beside them.
+/// All kinds of ends in the order in which they are watched, joint by joint; of several at the same point the first one
+/// counts. Conditions and user events come last, because very close to a standstill they count as later.
 const std::array<Guards::Row, 11> Guards::table{{
     {Per::joint, By::release, &Guards::watch_release},
     {Per::joint, By::slip, &Guards::watch_slip},
@@ -67,7 +67,7 @@ bool Guards::slides(std::size_t joint) const {
     return now_.rubs(joint) && how.way != Motion::stuck && !how.riding;
 }
 
-/// Returns the size of the velocities whose difference is the slip of a joint.
+/// Returns the magnitude of the velocities whose difference is the slip of a joint.
 double Guards::fastest(std::size_t joint) const {
     double sum = greatest(segment_.belts[joint]);
     for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * greatest(segment_.y[n() + body]);
@@ -96,8 +96,8 @@ void Guards::watch_slip(std::size_t joint) {
     for (const auto& [body, by] : own.of) {
         inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
     }
-    // All that goes on in the stretch is slower than the rounding of its torques could make it, or leaves no trace in
-    // the angle.
+    // The joint may creep if its motion over the stretch is slower than rounding of its torques explains, or too small
+    // to change the angle.
     const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
     const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, now_.y));
     const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
@@ -124,12 +124,12 @@ void Guards::watch_slip(std::size_t joint) {
     const auto always = [](double) { return true; };
     auto zero = cheb::first_below(curve, -1, how.leaving, always);
     if (how.leaving && zero && *zero <= -1 &&
-        !mechanics_.has_belt(joint)) {  // the motion may be known less well than it is rounded
+        !mechanics_.has_belt(joint)) {  // the error of the motion may exceed its rounding
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
     if (!zero && curve(1) <= curve.floor()) zero = 1;
-    // A slip that only touches zero does so at its lowest place.
+    // A slip that only touches zero counts at its lowest point.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
     }
@@ -139,13 +139,13 @@ void Guards::watch_slip(std::size_t joint) {
     if (stays) stay_.push_back(joint);
 }
 
-/// Returns whether the torques at a joint are known as well as their rounding: it has no belt, and no function of its
-/// motion acts.
+/// Returns whether the torques at a joint are accurate to rounding: everything is linear, there is no belt, and no
+/// wall.
 bool Guards::may_creep(std::size_t joint) const {
     return mechanics_.all_linear() && !mechanics_.has_belt(joint) && now_.mode.leans[joint] == 0;
 }
 
-/// The torque that holds a joint passes its limit.
+/// Watches whether the torque of a sticking joint exceeds its limit.
 void Guards::watch_release(std::size_t joint) {
     if (!now_.mode.holds(joint) || now_.mode.rigid[joint] != 0) return;
     const double beside_zero = now_.mode.friction[joint].beside;
@@ -153,7 +153,7 @@ void Guards::watch_release(std::size_t joint) {
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
     Nodes pull{};
-    Series series = segment_.holding_series[joint];  // of the pull
+    Series series = segment_.holding_series[joint];  // series of the pull
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j], series[j] = -series[j];
     for (const Motion side : {Motion::forward, Motion::backward}) {
         const double sign = model::sign_of(side);
@@ -163,7 +163,7 @@ void Guards::watch_release(std::size_t joint) {
             good_ = false;
             return;
         }
-        if (std::isinf(most[0])) continue;  // a freewheel, backward
+        if (std::isinf(most[0])) continue;  // the backward side of a freewheel
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
             return of_.balances.on_stretch(segment_, x,
@@ -189,7 +189,7 @@ void Guards::watch_release(std::size_t joint) {
         if (cheb::least_bound(left) > 2 * doubt) continue;
         Nodes values{};
         for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
-        left = cheb::fit(values);  // beside zero it has digits that a difference of series has not
+        left = cheb::fit(values);  // near zero this has more digits than the difference of two series
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
         curve.raise_floor(doubt);
         const auto lets_go = [&](double x) {
@@ -209,14 +209,15 @@ void Guards::watch_release(std::size_t joint) {
             }
             return touch.has_value();
         };
-        // A jump that was passed over may have taken it far beyond.
+        // An undetected jump may have taken the torque far beyond its limit.
         auto x = values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, false, touches);
         if (x && touch) x = first_true(lets_go, *touch);
         if (x && segment_.time(*x) < segment_.end) see(x, static_cast<int>(side));
     }
 }
 
-/// Returns the torques that hold a joint at most against a pull to this side, at the nodes; NaN if one is not finite.
+/// Returns the greatest torques with which a joint resists a pull to this side, at the nodes; NaN if a value is not
+/// finite.
 Nodes Guards::limit(std::size_t joint, Motion side) const {
     const Slipping& how = now_.mode.friction[joint];
     Nodes most{};
@@ -248,10 +249,10 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
         if (!std::isfinite(place)) continue;
         const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
-        constexpr double between_nodes = 3;  // so many times the values at nodes a series is there at most
+        constexpr double between_nodes = 3;  // bound of a series relative to its greatest value at the nodes
         if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * of_.walls.reach[joint]) continue;
         for (double& way : change) way *= -wall;
-        // The gap of a motion that begins at the wall is known as well as its way from there.
+        // A motion that begins at the wall has a gap equal to its displacement, so it is as accurate.
         const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
         const double far =
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
@@ -261,8 +262,8 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
     }
 }
 
-/// An elastic wall is pressed while its depth and its torque are both positive. Before it is, the depth is, or, where
-/// it was left before the motion came back to its place, the torque will be.
+/// Watches an elastic wall, which pushes while depth and torque are both positive. The depth becomes positive first,
+/// except when a wall was left while still deformed: then the torque does.
 void Guards::watch_stop(std::size_t joint) {
     if (!joint_at(joint).stops) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
@@ -270,7 +271,7 @@ void Guards::watch_stop(std::size_t joint) {
     const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops);
-    if (pressed == 0) {  // it may come to the other wall before
+    if (pressed == 0) {  // it may reach the opposite wall first
         model::Walls other = stops;
         (deep > 0 ? other.upper : other.lower) = deep * model::never;
         watch_walls(joint, other);
@@ -285,10 +286,10 @@ void Guards::watch_stop(std::size_t joint) {
     see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), pressed != 0 ? 0 : deep);
 }
 
-/// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
+/// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses.
 void Guards::watch_slider(std::size_t slider) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
-    if (frame_.keeps(own.joint)) return;  // the slip of a contact that others hold is rounding
+    if (frame_.keeps(own.joint)) return;  // the slip of a contact held by other joints is only rounding
     Half half = 1;
     if (now_.mode.sliders[slider] != Motion::stuck) {
         half = static_cast<int>(now_.mode.sliders[slider]);
@@ -303,7 +304,7 @@ void Guards::watch_slider(std::size_t slider) {
     }
 }
 
-/// A law of friction goes on with another formula.
+/// Watches whether the speed leaves the present range of the friction law.
 void Guards::watch_corner(std::size_t joint) {
     const Joint& own = mechanics_.system().joints[joint];
     const model::Friction& law = own.friction.law;
@@ -324,7 +325,7 @@ void Guards::watch_corner(std::size_t joint) {
     }
 }
 
-/// Returns the place at which the slip of a joint leaves its half.
+/// Returns the point at which the slip of a joint leaves this half.
 std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
     const auto slip = [&](const Moment& at) {
         return mechanics_.velocity(joint, at.y) - mechanics_.belt(joint, at.t, at.side);
@@ -332,7 +333,7 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
     return leaves(mechanics_.slips(joint, segment_.y, segment_.belts[joint]), slip, half);
 }
 
-/// The rate of bristles has a corner where the slip is 0: a stretch ends there.
+/// Ends the stretch at slip 0, where the rate of bristles has a corner.
 void Guards::watch_bristles(std::size_t joint) {
     if (mechanics_.bristle(joint) == nullptr) return;
     Half& half = of_.normal_halves[joint];
@@ -342,13 +343,13 @@ void Guards::watch_bristles(std::size_t joint) {
     half = -half;
 }
 
-/// A normal load that passes zero ends a stretch: what is negative counts as none.
+/// Ends the stretch where the normal load crosses zero, because negative loads count as zero.
 void Guards::watch_normal(std::size_t joint) {
     if (!mechanics_.has_normal(joint) && (!mechanics_.may_open(joint) || now_.rubs(joint))) return;
     const auto pressing = [&](const Moment& at) { return mechanics_.pressing(joint, at); };
     const Nodes values = segment_.at_nodes(pressing, point_);
     if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
-        // Nothing presses at the start, where the load may be its rounding, or 0 for long.
+        // The contact is open at the start, where the load may be rounding or 0 for some time.
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
         const auto exact = segment_.anywhere(pressing, point_);
@@ -363,7 +364,7 @@ void Guards::watch_normal(std::size_t joint) {
     half = -half;
 }
 
-/// Returns the place at which an angle, a velocity or a state comes to a relay's level.
+/// Returns the point at which an angle, velocity or state reaches a relay's level.
 std::optional<double> Guards::switches(double sign, double level, std::size_t k) const {
     Nodes values = segment_.y[k];
     Series series = segment_.series[k];

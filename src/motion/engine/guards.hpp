@@ -1,4 +1,4 @@
-// The guards of a stretch: everything whose zero ends it before its time.
+// The guards of a stretch: quantities whose zero ends it early.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 namespace dinal::motion::engine {
 
 /// Searches one stretch for its first end, by a table of all kinds of ends: a new kind is a row there, and a case of
-/// Engine::handle(). It decides nothing: it notes only on which side of zero values are, and which contacts creep.
+/// Engine::handle(). Makes no decision, but notes the signs of watched values and which contacts creep.
 class Guards {
 public:
     struct Of {
@@ -31,36 +31,37 @@ public:
         Contacts& contacts;
         Conditions& conditions;
         UserEvents& users;
-        std::vector<Half>& normal_halves;  ///< of each joint: the sign of its normal load, or of the slip of bristles
+        std::vector<Half>& normal_halves;  ///< for each joint: sign of its normal load, or of the slip of its bristles
     };
     explicit Guards(const Of& of)
         : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}
 
     /// Returns the first end.
     Ending first();
-    /// Joints that were let go and do not leave: they hold, and must be pulled clearly farther.
+    /// The released joints that do not move: they stick again, and need a clearly larger pull.
     [[nodiscard]] const std::vector<std::size_t>& stay() const { return stay_; }
     /// Returns false if a limit, or the value of a user's event, was not finite.
     [[nodiscard]] bool good() const { return good_; }
-    /// The user's event that would be thrown back at once, and again, if there is one.
+    /// The user event that would be thrown back again at once; empty if there is none.
     [[nodiscard]] std::optional<std::size_t> thrown_back() const { return thrown_back_; }
 
 private:
     enum class Per { joint, slider, load, motion };
-    /// A row of the table: one kind of what ends a stretch, of which each joint or the like has one.
+    /// A row of the table: a kind of end, watched for each joint, slider or load, or once for the motion.
     struct Row {
         Per per;
         By by;
-        void (Guards::*watch)(std::size_t which);  ///< calls see() where it happens first, if it can happen at all
+        void (Guards::*watch)(std::size_t which);  ///< calls see() with the first such end, if there can be one
     };
     static const std::array<Row, 11> table;
     [[nodiscard]] std::size_t count(Per per) const;
 
-    /// The stretch ends here by what is being watched, if nothing ends it before.
+    /// Ends the stretch at x by what is being watched, if nothing ends it earlier.
     void see(std::optional<double> x, int side = 0);
-    /// Watches a curve that is positive, or begins at a known `zero`, until it ends the stretch. `floor`: its rounding.
+    /// Ends the stretch at the first zero of a curve that is positive, or starts from a known `zero`. `floor` is its
+    /// rounding.
     void watch(const Series& left, double floor, bool zero, int side);
-    /// Returns the place at which a function of the moment with these values at the nodes leaves its half.
+    /// Returns the point at which a function of the moment, given its values at the nodes, leaves its half.
     template <class Value>
     std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
         return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
@@ -73,7 +74,7 @@ private:
     void watch_walls(std::size_t joint, const model::Walls& walls);
     [[nodiscard]] std::optional<double> switches(double sign, double level, std::size_t k) const;
 
-    // What the rows of the table call.
+    // The functions of the table's rows.
     void watch_release(std::size_t joint);
     void watch_slip(std::size_t joint);
     void watch_corner(std::size_t joint);
@@ -95,8 +96,8 @@ private:
     const Now& now_;
     const Of& of_;
     Ending ending_;
-    By by_ = By::nobody;     ///< of the row that is being watched
-    std::size_t which_ = 0;  ///< of those that have it
+    By by_ = By::nobody;     ///< cause in the row that is being watched
+    std::size_t which_ = 0;  ///< index of the joint, slider or load that is being watched
     std::vector<std::size_t> stay_;
     std::optional<std::size_t> thrown_back_;
     bool good_ = true;

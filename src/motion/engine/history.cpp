@@ -13,7 +13,7 @@ public:
     StretchLeg(const std::vector<model::Joint>& joints, std::size_t bodies, const Kept& kept)
         : joints_(joints), bodies_(bodies), kept_(kept), works_(joints.size()) {}
     [[nodiscard]] double length() const override { return kept_.length; }
-    /// A row at the end time of the stretch is later than the stretch, as in the run.
+    /// A row at the end time of the stretch may be slightly later than the stretch.
     [[nodiscard]] double since_start(double t) const override {
         const double since = kept_.start.until(t);
         return t >= kept_.start.later(kept_.length).hi ? std::max(since, kept_.length) : since;
@@ -69,7 +69,7 @@ private:
             for (double& c : sums.stop) c *= own.stops->damping;
         }
         if (!at_nodes.holds) sums.dry = work(friction, difference(belt, v));
-        Series sliders{};  // their torques; friction does not include these
+        Series sliders{};  // torques of the sliders, which are not part of friction
         if (at_nodes.springs != nullptr && !at_nodes.presses) sliders = cheb::fit(*at_nodes.springs);
         if (at_nodes.slides != 0) {
             Series torque{};
@@ -132,7 +132,7 @@ void History::close(const Clock& end, std::vector<double> y) {
 }
 
 std::vector<double> History::at(double t, Side side) const {
-    // The last stretch that begins at or before t, compared as doubles; before t for a limit from the left.
+    // The last stretch that begins at or before t, compared as doubles; for a limit from the left, before t.
     const auto after = std::partition_point(list_.begin(), list_.end(), [t, side](const Kept& kept) {
         return side == Side::before ? kept.start.hi < t : kept.start.hi <= t;
     });

@@ -15,16 +15,16 @@
 
 namespace dinal::motion::engine {
 
-/// A stretch of one body that is computed again when it is asked for.
+/// A stretch of one body that is recomputed when it is evaluated.
 class Remade {
 public:
     Remade() = default;
     Remade(const Remade&) = delete;
     Remade& operator=(const Remade&) = delete;
     virtual ~Remade() = default;
-    /// Angle and velocity.
+    /// Angle and velocity at the time since the start.
     [[nodiscard]] virtual std::vector<double> at(double since_start) const = 0;
-    /// The work by the time since the start, as a function that must not outlive the stretch.
+    /// The work as a function of the time since the start. The function must not outlive the stretch.
     [[nodiscard]] virtual std::function<Work(double)> works() const = 0;
     [[nodiscard]] virtual std::size_t bytes() const = 0;
 };
@@ -36,8 +36,8 @@ struct Kept {
     double length = 0;  ///< length used, at most 2 h
     std::vector<double> begin{};
     std::vector<Series> series{};  ///< each angle, velocity and state, minus `begin`
-    /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the push of the base
-    /// on the body.
+    /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial torque
+    /// of the base.
     struct Acting {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< null without base or belt
@@ -47,7 +47,7 @@ struct Kept {
         bool holds = false;                     ///< whether friction holds without slip
     };
     std::vector<Acting> acting{};
-    std::shared_ptr<const Remade> remade{};  ///< instead of series and torques
+    std::shared_ptr<const Remade> remade{};  ///< replaces the series and torques
 
     [[nodiscard]] double value(std::size_t k, double x) const {
         return x <= -1 ? begin[k] : begin[k] + cheb::value(series[k], std::min(x, 1.0));

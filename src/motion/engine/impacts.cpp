@@ -14,13 +14,13 @@ using model::Outcome;
 
 namespace {
 
-// In units of the pace.
+// Relative to the pace.
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 
 }  // namespace
 
-/// Returns the duration of the next bounces from this speed, under torques that stay as they are; none if one of
-/// these is no number.
+/// Returns the durations of the next bounce and of all bounces from this speed, under constant torques; empty if a
+/// torque is not finite.
 std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall, double speed) {
     const Joint& own = problem_.system.joints[joint];
     const auto back_in = [&](bool out) {
@@ -28,7 +28,7 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (!now_.rubs(j)) continue;
             if (now_.slip(mechanics_, j) != 0) thrown.friction[j].way = model::motion_of(now_.slip(mechanics_, j));
-            // Friction acts against the sliding: out and back again, or, on a belt, the same way all the time.
+            // Friction opposes the sliding: it reverses with the bounce, or, on a belt, keeps its direction.
             const bool turns = j == joint && mechanics_.belt(j, now_.t.hi, now_.side()) == 0;
             if (turns) thrown.friction[j].way = (wall > 0) == out ? Motion::backward : Motion::forward;
         }
@@ -40,7 +40,7 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
     const double out = back_in(true), back = back_in(false);
     if (out == -model::never || back == -model::never) return {};
     if (!(out > 0)) return Bounces{};
-    if (!(back > 0)) return Bounces{speed / out, speed / out};  // friction holds it at the top of the bounce
+    if (!(back > 0)) return Bounces{speed / out, speed / out};  // friction holds the mass at the top of the bounce
     const double slower = std::sqrt(back / out), once = speed * (1 / out + slower / back);
     const double kept = own.walls->restitution * slower;
     return Bounces{once, kept < 1 ? once / (1 - kept) : model::never};
@@ -62,7 +62,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     if (stayed && before == 0) {
         now_.mode.leans[joint] = wall;
         now_.mode.friction[joint].leaving = false;
-        Chatter::too_blunt(now_.mode.friction[joint], torque_size(joint));  // it went, and did not get away
+        Chatter::too_blunt(now_.mode.friction[joint], torque_size(joint));  // the joint was released without leaving
         if (!decide(true)) return false;
         stands();
         return goes_on();
@@ -77,7 +77,8 @@ bool Engine::hit(std::size_t joint, int wall) {
     if (!rests) {
         const auto bounces = next_bounces(joint, wall, e * before);
         if (!bounces) return fail(Outcome::excitation_not_finite);
-        // Without a spring the run so far tells what is short: not its end, so that one may stop anywhere and go on.
+        // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
+        // changes nothing.
         const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
@@ -109,14 +110,14 @@ bool Engine::hit(std::size_t joint, int wall) {
     }
     if (!restart_contacts(Because::impact, joint)) return false;
     if (rests) stands();
-    // Bounces at one wall die out; to and fro between others they need not, and when they do it takes many.
+    // Bounces at one wall end by themselves; those between several walls need not, or only after very many.
     constexpr int most_to_and_fro = 5000;
     const bool other = walls_.last_hit != std::pair(joint, wall);
     walls_.last_hit = {joint, wall};
     return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
 }
 
-/// A joint that leans, and was struck, goes: away from its wall, or into it, which is an impact of its own.
+/// Makes joints that leaned and were struck leave: away from the wall, or into it, which is another impact.
 void Engine::leave_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const double v = mechanics_.velocity(j, now_.y);
@@ -129,8 +130,7 @@ void Engine::leave_walls() {
 bool Engine::act_all(const std::vector<std::size_t>& told) {
     users_.pass(told);
     if (!std::all_of(told.begin(), told.end(), [&](std::size_t event) { return act(event, told); })) return false;
-    // Events of the same instant are reported before one of them stops the run: a run that goes on would not report
-    // them.
+    // All simultaneous events are reported before one stops the run, as a continued run would not report them.
     const bool stops =
         std::any_of(told.begin(), told.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
     return !stops || fail(Outcome::stopped);
@@ -153,7 +153,8 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         if (!named) now_.y[0] = state.theta, now_.y[1] = state.velocity;
         Walls::keep_within(problem_.system, now_.y);
         conditions_->forget();
-        if (now_.y != before) now_.low.assign(n(), 0);  // what the user was given is what he goes on from
+        // the user's action saw the rounded angles, so the run continues from them
+        if (now_.y != before) now_.low.assign(n(), 0);
         now_.keep_rigid_places(problem_.system);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const double work = energy_at(j, now_.y) - energy_at(j, before);
@@ -176,7 +177,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
     return wanted.stop || goes_on();
 }
 
-/// A body that was thrown, and is soon back, is to be seen on its way.
+/// Shortens the next stretch if a body is in a short flight that returns soon.
 void Engine::see_flight() {
     if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, room_.balance)) return;
     for (std::size_t i = 0; i < n(); ++i) {
@@ -186,7 +187,7 @@ void Engine::see_flight() {
     }
 }
 
-/// Returns the energy that a joint stores, with the kinetic energy of its body if it is a body's joint with the ground.
+/// Returns the energy stored in a joint, plus the kinetic energy of the body if it is the joint with the ground.
 double Engine::energy_at(std::size_t joint, const std::vector<double>& y) const {
     const Joint& own = problem_.system.joints[joint];
     const double q = mechanics_.angle(joint, y);

@@ -1,4 +1,4 @@
-// The data that the general loop leaves at the end of a run.
+// The data that the general engine keeps at the end of a run.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace dinal::motion::engine {
 
-/// The state needed to resume a run.
+/// The state that a continued run needs.
 struct Carry {
     std::vector<double> y;
     std::vector<double> low;  ///< rounding errors of the angles; may be empty
@@ -25,14 +25,14 @@ struct Carry {
     Floor floor = {};  ///< may be empty
 };
 
-/// For the views of its bodies and links, and for the run that goes on.
+/// The data for views of single bodies and links, and for continuing the run.
 struct Left {
     std::vector<double> start = {};  ///< all angles, velocities and states at the start
     Mode begun = {};                 ///< mode of the contacts at the start
     std::shared_ptr<const History> history = {};
     std::shared_ptr<const Carry> carry = {};
 
-    /// Returns whether the motion between the rows was kept. A run that ended where it began needs no memory for it.
+    /// Returns whether the motion between the rows was kept. A run of no duration counts as kept.
     [[nodiscard]] bool is_dense(const Run& run) const {
         return history != nullptr && (history->bytes() > 0 || run.t_stop == run.t_start);
     }

@@ -46,7 +46,7 @@ double greatest_share(const Frame::Shape& shape) {
     return most;
 }
 
-/// Returns how the bodies of a joint, without `without`, turn it.
+/// Returns how the groups turn a joint through its bodies, leaving out the body `without`.
 Frame::Shape turned_by(const Joint& joint, const std::vector<Frame::Shape>& bodies,
                        std::size_t without = ~std::size_t{0}) {
     Frame::Shape shape;
@@ -127,8 +127,8 @@ Frame::Frame(const model::System& system, const Mode& mode)
     sharing = weakness.asDiagonal() * algebra::pseudo_inverse(on_bodies);
 }
 
-/// A holding joint whose angle the others leave free removes one way to move. Each row has such a joint's coefficients
-/// of the leads, followed by the combination of joints it was made of.
+/// Closes loops: each sticking joint whose angle the others leave free removes a degree of freedom. A row has the
+/// joint's coefficients of the leads, followed by the combination of joints it consists of.
 void Frame::close_loops(Eigen::MatrixXd rows) {
     const auto leads = static_cast<Eigen::Index>(leads_.size());
     std::map<Eigen::Index, Eigen::Index> stopped;  // each dependent lead, and the row that determines it
@@ -215,7 +215,7 @@ void Frame::separate(const model::System& system) {
     }
 }
 
-/// Proceeds outwards from the ground and the leads, in the order of the edges.
+/// Computes body velocities outwards from the ground and the leads, in the order of the edges.
 void Frame::go_along(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const {
     for (const Edge& edge : edges) {
         double left = mode.leans[edge.joint] != 0 ? 0 : of_joints[edge.joint];
@@ -290,7 +290,7 @@ std::vector<std::size_t> redundant_rigid(const model::System& system) {
     return Frame(system, mode).redundant;
 }
 
-/// Exchanges all variables that violate their condition at once; if that cycles, one at a time.
+/// Solves by exchanging all variables that violate a condition at once, or one at a time if that cycles.
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high) {
     const Eigen::Index n = g.size();
@@ -519,7 +519,7 @@ double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& 
     if (const auto& constant = contacts_[joint].constant)
         return -model::sign_of(how.way) * constant->sliding[side_of(how.way)];
     Slipping present = how;
-    // Along a wall no guard watches for the corners of the law, so choose the range here.
+    // No guard watches the corners of the law at a wall, so the range is chosen here.
     if (mode.leans[joint] != 0) present.range = range_of(joint, std::fabs(belt));
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
@@ -616,7 +616,7 @@ void Mechanics::rates(const Moment& at, double* out, const Mode* mode) const {
     for (std::size_t s = 0; s < sliders_.size(); ++s) {
         const bool sticks = mode != nullptr && mode->sliders[s] == Motion::stuck;
         const std::size_t joint = sliders_[s].joint;
-        // If the contact does not slip, the remaining slip is rounding, which no polynomial follows.
+        // If the contact does not slip, the remaining slip is rounding, which no polynomial can represent.
         const double moving = belt(joint, at.t, at.side), slips = velocity(joint, at.y) - moving;
         const bool stands = std::fabs(slips) <= 16 * rounding * (speed_scale(joint, at.y) + std::fabs(moving));
         out[sliders_[s].bend - 2 * bodies()] = sticks && !stands ? slips : 0;
@@ -656,7 +656,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
             return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
                    (2 * part);
         };
-        // A jump is no steepness: it is far less steep over a wider part.
+        // A jump does not count as steepness: over a wider interval it is far less steep.
         constexpr double ulps = 1024 * rounding, wider = 1e-4;
         if (!own.spring.none()) size += std::min(by_steepness(ulps), by_steepness(wider));
     }
@@ -745,8 +745,8 @@ bool Mechanics::has_functions() const {
     return has;
 }
 
-/// The greatest sum of a row is no less than the square of the greatest frequency (Gershgorin), and not far from it in
-/// a chain. To find that itself takes the cube of the number of groups, for each set of joints that hold.
+/// Bounds the square of the greatest frequency by the greatest row sum (Gershgorin). The eigenvalue itself would cost
+/// the cube of the number of groups for each set of sticking joints.
 double Mechanics::bound_of_fastest(const Frame& frame) const {
     std::vector<double> sums(frame.groups(), 0);
     for (std::size_t j = 0; j < joints(); ++j) {

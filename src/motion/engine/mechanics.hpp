@@ -36,14 +36,14 @@ struct Slipping {
     bool riding = false;    ///< at slip 0 because other joints hold; its friction is at the limit
     std::size_t range = 0;  ///< speed range of its law while it slides
     double blunt = 0;       ///< excess over the limit needed for the next release, after a release without motion
-    /// Not 0 if loads jump at slip 0 and drive the joint back from both sides: then the limit forward counts for the
-    /// loads at this slip forward, and the limit backward for those backward.
+    /// Nonzero if loads jump at slip 0 and drive the joint back from both sides. The limit of each direction then
+    /// counts for the loads at this slip in that direction.
     double beside = 0;
-    /// Whether the loads at slip 0 would let it go, so that it leaves where those of a side overcome the friction of
-    /// sliding.
+    /// Whether the loads at slip 0 would release the joint, so that it leaves when the loads of one side overcome
+    /// sliding friction.
     bool driven_back = false;
-    /// The direction of a creep slower than rounding, or `stuck`. During a creep `way` is stuck, and the joint holds
-    /// while its pull stays within `apart` of its balance with sliding friction.
+    /// The direction of a creep, a slip slower than rounding, or `stuck`. During a creep `way` is stuck, and the joint
+    /// holds while its pull stays within `apart` of its balance with sliding friction.
     model::Motion creeps = model::Motion::stuck;
     double apart = 0;
 };
@@ -63,16 +63,16 @@ struct Mode {
     std::vector<int> presses;  ///< each joint: 1 on its upper elastic wall, -1 on its lower one, otherwise 0
 };
 
-/// The degrees of freedom of the bodies while the joints that hold in a mode hold. A group is one of them: its bodies
-/// move in fixed proportions. A body may be in several groups, as in a planetary gear; these are orthogonal with
-/// respect to the inertias, so that each group has its own acceleration.
+/// The degrees of freedom of the bodies in a mode. A group is one degree of freedom: its bodies move in fixed
+/// proportions. A body may belong to several groups, as in a planetary gear; groups are orthogonal with respect to
+/// inertia, so that each has its own acceleration.
 struct Frame {
     struct Share {
         std::size_t group;
         double by;
         bool operator==(const Share&) const = default;
     };
-    using Shape = std::vector<Share>;  ///< how the groups move a body or turn a joint; empty: it does not move
+    using Shape = std::vector<Share>;  ///< share of each group in the motion of a body or joint; empty: no motion
     struct Edge {
         std::size_t joint, child;  ///< the body tied to the other bodies of the joint
         double by;                 ///< the weight of the child
@@ -83,19 +83,19 @@ struct Frame {
     std::vector<double> inertia;          ///< inertia of each group
     std::vector<Edge> edges;              ///< ordered: the other bodies of an edge come first
     std::vector<std::size_t> closing;     ///< holding joints that close loops
-    std::vector<std::size_t> redundant;   ///< those of them that follow from the others
+    std::vector<std::size_t> redundant;   ///< joints of these that are linearly dependent
     Eigen::MatrixXd sharing;              ///< with loops: share of each holding joint in the torques on bodies
-    std::vector<std::size_t> sharing_of;  ///< the joints of its rows
-    double longest = model::never;        ///< stretch that follows the swings of its groups, time units
+    std::vector<std::size_t> sharing_of;  ///< joints of the rows of `sharing`
+    double longest = model::never;        ///< longest stretch that resolves the vibrations of its groups, time units
 
     [[nodiscard]] std::size_t groups() const { return inertia.size(); }
     /// Returns whether the holding joints fix the angle of this one.
     [[nodiscard]] bool keeps(std::size_t joint) const { return joints[joint].empty(); }
-    /// Computes the velocity of each body relative to its groups from that of each joint: those of belts.
+    /// Computes the velocity of each body relative to its groups from the velocities of the joints' belts.
     void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
-    /// Computes the torque of each holding joint from the torque that each body lacks, I a - torque.
+    /// Computes the torque of each sticking joint from the missing torque of each body, I a - torque.
     void multipliers(const std::vector<double>& lacking, std::vector<double>& of_joints) const;
-    /// The same at all nodes of a stretch. `lacking` is used up.
+    /// The same at all nodes of a stretch. Overwrites `lacking`.
     void multipliers(std::vector<Nodes>& lacking, std::vector<Nodes>& of_joints) const;
 
 private:
@@ -104,11 +104,11 @@ private:
     void separate(const model::System& system);
 
     const model::System* system_;
-    Eigen::MatrixXd anchor_;          ///< motion of the leads caused by imbalance in closed loops
+    Eigen::MatrixXd anchor_;          ///< correction of the leads for the mismatch in closed loops
     std::vector<std::size_t> leads_;  ///< the first body of each degree of freedom, before loops were closed
 };
 
-/// Returns the rigid links that follow from other rigid links.
+/// Returns the indices of rigid links that are implied by other rigid links.
 std::vector<std::size_t> redundant_rigid(const model::System& system);
 
 /// The minimum of x G x / 2 + g x within a box; G is symmetric and regular.
@@ -206,11 +206,11 @@ public:
     void rates(const Moment& at, double* out, const Mode* mode = nullptr) const;
     /// The torque of a joint that does not hold.
     [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
-    /// The same at nodes for a native joint that does not lean on a wall, from angles, velocities (and states) y and
-    /// the velocity of its belt; at other nodes `out` is of no use.
+    /// The torque of a native joint that is not at a wall, at the nodes `first` to `end` - 1. y has angles, velocities
+    /// (and states), `belt` the velocity of its belt. The other nodes of `out` are undefined.
     void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
                         std::size_t first, std::size_t end, Nodes& out) const;
-    /// Adds the friction part of native_torques().
+    /// Adds the friction part of native_torques() at these nodes.
     void add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first, std::size_t end,
                              Nodes& out) const;
     /// The magnitude of sliding friction.
@@ -218,7 +218,7 @@ public:
     [[nodiscard]] std::size_t range_of(std::size_t joint, double speed) const;
     /// The largest pull this way that sticking can hold.
     [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
-    /// The pull this way at which a joint leaves slip 0 in this mode.
+    /// The pull in direction `way` at which a joint leaves slip 0 in this mode.
     [[nodiscard]] double limit_at_rest(std::size_t joint, const Mode& mode, model::Motion way, const Moment& at) const {
         const double most = holding(joint, way, at);
         return mode.friction[joint].driven_back && std::isfinite(most) ? sliding(joint, {.way = way}, 0, at) : most;
@@ -263,8 +263,8 @@ public:
     [[nodiscard]] bool asks_functions() const;
     /// Returns whether there is any user function.
     [[nodiscard]] bool has_functions() const;
-    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. Of
-    /// many groups a bound that it does not exceed.
+    /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. An
+    /// upper bound of it if there are many groups.
     [[nodiscard]] double fastest(const Frame& frame) const;
 
     /// Visits all signals.
@@ -297,7 +297,7 @@ public:
             std::find_if(rates_.begin(), rates_.end(), [&rate](const Piecewise& each) { return &each == &rate; });
         return found == rates_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - rates_.begin()));
     }
-    /// Sets the direction of users' friction laws according to the mode.
+    /// Passes the direction of sliding to users' friction laws.
     void let_laws_act(const Mode& mode) {
         for (std::size_t j = 0; j < contacts_.size(); ++j) {
             const Slipping& how = mode.friction[j];
@@ -310,8 +310,8 @@ public:
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
     }
-    /// Calls every function that is not read, so that variables shared by several functions are those of this moment,
-    /// as in a program that calls each of them once, in order.
+    /// Calls every function that is not known as a formula once in order, so that variables shared by these functions
+    /// have the values of this moment.
     void call_unread(const Moment& at, const Mode& mode) const;
     /// A user function and its current piece, for the inspection of formulas.
     struct Asked {
@@ -319,7 +319,7 @@ public:
         const model::terms::Piece* piece = nullptr;
     };
     [[nodiscard]] Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
-    /// The rate beyond the surface along which it slides.
+    /// The rate function on the other side of the surface along which the state slides.
     [[nodiscard]] Asked asked_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
     [[nodiscard]] Asked asked_when(std::size_t event) const {
         return {drive_.events[event].when.get(), whens_[event].piece()};
@@ -328,7 +328,8 @@ public:
     [[nodiscard]] Asked asked_law(std::size_t joint) const;
     [[nodiscard]] const Signal& base_signal() const { return base_; }
     [[nodiscard]] const Signal& belt_signal(std::size_t joint) const { return belts_[joint]; }
-    /// Visits the signals that limit or drive a joint's friction in a mode, with the torque per unit of each.
+    /// Visits the signals that limit or drive a joint's friction in a mode, with the derivative of the torque with
+    /// respect to each.
     template <class F>
     void for_each_friction(std::size_t joint, const Mode& mode, const Moment& at, F f) const {
         const Contact& c = contacts_[joint];
@@ -357,7 +358,7 @@ private:
         std::optional<Piecewise> law = {};     ///< the user's friction law
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;
-        /// What holds and what slides each way, where that depends on the way only.
+        /// Torques that depend on the direction only.
         struct Constant {
             std::array<double, 2> holding, sliding;
         };

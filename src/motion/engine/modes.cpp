@@ -37,7 +37,7 @@ std::vector<model::Oscillator> modes_of(const model::System& system) {
     return modes;
 }
 
-/// By the greatest sum of a row of the stiffnesses over inertias (Gershgorin).
+/// Uses the greatest row sum of stiffness over inertia (Gershgorin).
 text::Expected<model::Oscillator> no_slower_than_modes(const model::System& system) {
     std::vector<double> sums(system.bodies.size(), 0);
     for (const model::Joint& joint : system.joints) {

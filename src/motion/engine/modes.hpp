@@ -1,4 +1,4 @@
-// The modes of a system: its small free motions.
+// The eigenmodes of a system: its small free vibrations.
 #pragma once
 
 #include <complex>
@@ -14,11 +14,12 @@ namespace dinal::motion::engine {
 /// The linear modes of the system without friction, each as a system of one body.
 std::vector<model::Oscillator> modes_of(const model::System& system);
 
-/// A system of one body that swings no slower than any mode.
+/// A one-body system whose frequency is at least that of every mode.
 text::Expected<model::Oscillator> no_slower_than_modes(const model::System& system);
 
 struct EigenMode {
-    std::complex<double> value;                 ///< per time unit; of a pair the one with a positive imaginary part
+    /// eigenvalue per time unit; of a conjugate pair the one with positive imaginary part
+    std::complex<double> value;
     std::vector<std::complex<double>> shape{};  ///< amplitude of each body; the greatest is 1
 };
 

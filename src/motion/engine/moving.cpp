@@ -14,9 +14,9 @@
 
 namespace dinal::motion::engine {
 
-/// The derivative of a prescribed angle, by series on pieces short enough for a polynomial to reach rounding. The
-/// pieces are halvings of equal parts between breaks, so they depend on the angle only and not on the order of
-/// evaluation: leftover tiny pieces would differentiate rounding errors. No stretch of a run passes the end of a piece.
+/// The derivative of a prescribed angle, by series on pieces that a polynomial resolves to rounding. The pieces are
+/// halvings of equal parts between breaks, so they depend on the angle only and not on the order of evaluation:
+/// leftover tiny pieces would differentiate rounding errors. No stretch of a run passes the end of a piece.
 class VelocityOfAngle final : public model::UserFunction {
 public:
     VelocityOfAngle(model::Excitation angle, double start, double longest)
@@ -28,11 +28,11 @@ public:
     }
     double next_break(double t) override { return angle_.next_break(t); }
     double told_until(double t) override {
-        constexpr double beside = 1e-9;  // of a piece: who stands so near to its end stands at it
+        constexpr double beside = 1e-9;  // fraction of a piece: a time this close to its end belongs to the next one
         const auto& [from, own] = piece_at(t);
         return own.to - t > beside * own.h ? own.to : piece_at(own.to).second.to;
     }
-    /// The longest between two looks at a function between which it may do what the series do not.
+    /// The longest distance of two samples between which a function is not proven to follow the series.
     [[nodiscard]] double gap() const { return gap_; }
 
 private:
@@ -57,13 +57,13 @@ private:
         const bool ends = next != breaks_.begin() && *next < model::never;
         const double length = ends ? (*next - begin) / std::ceil((*next - begin) / longest_) : longest_;
         double part = std::floor((t - begin) / length);
-        if (begin + (part + 1) * length <= t) ++part;  // the quotient was rounded down
+        if (begin + (part + 1) * length <= t) ++part;  // correction for a rounded quotient
         const double from = begin + part * length, to = begin + (part + 1) * length;
         return {from, ends && !(to < *next) ? *next : to, *next};
     }
 
     std::pair<double, Piece> make(double t) {
-        constexpr double enough = 8;  // times the rounding of the angles and of the times at which they are asked
+        constexpr double enough = 8;  // multiple of the rounding of angles and of the times of evaluation
         constexpr int most_looks = 40, patience = 12;
         const std::array<double, 3> part = part_around(t);
         double from = part[0], to = part[1];
@@ -90,7 +90,7 @@ private:
             const double tail = cheb::tail(series), size = cheb::size(series);
             const double late = std::max(std::fabs(from), std::fabs(to));
             const bool smooth = tail <= enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
-            if (told == Told::strays) least = model::never;  // a series that hid something is no measure
+            if (told == Told::strays) least = model::never;  // a series that missed a detail is not a reference
             ++in_vain;
             const double off = smooth ? 0 : tail / size;
             if (!std::isfinite(size) || smooth || off < least / 2) {
@@ -108,10 +108,10 @@ private:
     }
 
     enum class Told { unknown, strays, all };
-    /// Whether the functions of the angle do what the series tells between its nodes.
+    /// Decides whether the functions of the angle follow the series between its nodes.
     Told by_series(const Series& series, double from, double h) {
-        constexpr double clearly = 64, hair = 16;
-        constexpr int thorough = 64;
+        constexpr double clearly = 64, roundings_inside = 16;
+        constexpr int search_budget = 64;
         const double late = std::max(std::fabs(from), std::fabs(from + 2 * h));
         Told told = Told::all;
         for (const model::Component& c : angle_.components()) {
@@ -123,12 +123,12 @@ private:
                 continue;
             }
             unseen_.begin(*formula, nullptr);
-            unseen_.give(0, {from + h - script->delay, h - hair * rounding * late});
+            unseen_.give(0, {from + h - script->delay, h - roundings_inside * rounding * late});
             const double size = cheb::size(series);
             const double allowed =
                 (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
             if (unseen_.is_told(allowed, 0)) continue;
-            const auto found = unseen_.search({}, thorough, [=](const Series&) { return allowed; });
+            const auto found = unseen_.search({}, search_budget, [=](const Series&) { return allowed; });
             if (found.place) told = Told::strays;
             if (!found.place && !found.proven) told = Told::unknown;
         }
@@ -162,7 +162,8 @@ Moving::Moving(const model::System& given, const model::Drive& asked, double sta
         }
         if (moved->by_angle) drive.theta0[i] = belt_from(moved->motion, start);
         drive.velocity0[i] = belt_from(drive.belts.back(), start);
-        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;  // it is held, so any inertia will do
+        // the motion is prescribed, so its inertia is arbitrary
+        if (system.bodies[i].inertia == 0) system.bodies[i].inertia = 1;
     }
 }
 

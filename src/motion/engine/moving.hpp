@@ -11,14 +11,16 @@ namespace dinal::motion::engine {
 
 class VelocityOfAngle;
 
-/// A system in which a rigid joint, behind all others, imposes each prescribed motion like a belt of that velocity.
+/// A system whose prescribed motions are imposed by extra rigid joints with moving belts, placed after all other
+/// joints.
 struct Moving {
     model::System system;
     model::Drive drive;
 
     /// `longest` is the longest piece over which prescribed angles are sampled, time units.
     Moving(const model::System& given, const model::Drive& asked, double start, double longest);
-    /// The widest distance of two samples of an angle between which its motion is not proven, time units; 0 if none.
+    /// The widest distance of two samples of a prescribed angle between which its motion is not proven, time units; 0
+    /// if none.
     [[nodiscard]] double gap() const;
 
 private:

@@ -9,19 +9,19 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double clear_of_noise = 1e4;                             // differences over so much motion tell a slope
-constexpr double least_difference = 1e-8, most_difference = 1e-4;  // of what is moved
+constexpr double clear_of_noise = 1e4;                             // factor by which differences must exceed noise
+constexpr double least_difference = 1e-8, most_difference = 1e-4;  // increment of differences, relative to the variable
 constexpr std::size_t most_factors = 24;
-constexpr Eigen::Index few_unknowns = 8;    // their matrices are dense, also in a chain
-constexpr Eigen::Index many_unknowns = 64;  // their matrix is sparse, if it has no narrow band
+constexpr Eigen::Index few_unknowns = 8;    // with so few unknowns matrices are dense, even for a chain
+constexpr Eigen::Index many_unknowns = 64;  // with so many unknowns the matrix is sparse, unless it has a narrow band
 using Complex = std::complex<double>;
 
-/// Without a look at numbers that are not finite.
+/// The product without the standard's checks for infinities.
 Complex product(Complex a, Complex b) {
     return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
 
-/// Solves with L and U of a banded matrix; the diagonal has the inverses of the pivots.
+/// Solves with the LU factors of a banded matrix; the diagonal holds the inverse pivots.
 void solve_band(const Complex* rows, Eigen::Index size, Eigen::Index band, Complex* x) {
     const Eigen::Index wide = 2 * band + 1;
     for (Eigen::Index r = 1; r < size; ++r) {
@@ -35,8 +35,8 @@ void solve_band(const Complex* rows, Eigen::Index size, Eigen::Index band, Compl
     }
 }
 
-/// Makes L and U of a banded matrix without looking for pivots: those of springs and dampers need none. Returns false
-/// if one is next to nothing.
+/// Factors a banded matrix into L and U without pivoting, which springs and dampers do not need. Returns false if a
+/// pivot is tiny.
 bool eliminate_band(Complex* rows, Eigen::Index size, Eigen::Index band) {
     const Eigen::Index wide = 2 * band + 1;
     const auto at = [=](Eigen::Index r, Eigen::Index c) -> Complex& { return rows[r * wide + band + c - r]; };
@@ -73,13 +73,14 @@ const Integration& integration() {
     return weights;
 }
 
-/// The eigenvalues of the matrix that integrates values at the nodes but the first, one of each conjugate pair, and the
-/// change to the basis of its eigenvectors and back. There each eigenvalue has a coefficient; real and imaginary parts
-/// of the complex ones stand next to each other.
+/// The eigenvalues (one of each conjugate pair) of the matrix that integrates from the first node to the others, and
+/// the transformation to its eigenvectors and back. Each eigenvalue has a coefficient; its real and imaginary parts are
+/// adjacent.
 struct IntegrationModes {
     using Matrix = Eigen::Matrix<double, node_count - 1, node_count - 1>;
     std::vector<std::complex<double>> values{};
-    std::vector<std::pair<int, int>> places{};  ///< of both parts of a coefficient; the second is -1 where it is real
+    /// indices of real and imaginary part; the second is -1 for a real coefficient
+    std::vector<std::pair<int, int>> places{};
     Matrix from_nodes, to_nodes;
 };
 const IntegrationModes& integration_modes() {
@@ -102,7 +103,7 @@ const IntegrationModes& integration_modes() {
     return modes;
 }
 
-/// A matrix of `inner` rows, column after column, times a vector.
+/// Multiplies a column-major matrix of `inner` rows by a vector.
 void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
     using Column = Eigen::Matrix<double, inner, 1>;
     Column sums = Column::Zero();
@@ -111,7 +112,7 @@ void multiply(const double* matrix, const double* vector, std::size_t columns, d
     result = sums;
 }
 
-/// The inverse of a matrix, by elimination with the greatest pivots. A general decomposition takes six times as long.
+/// The inverse of a matrix by elimination with pivoting. A general decomposition takes six times as long.
 using Inner = Eigen::Matrix<double, inner, inner>;
 Inner inverse_of(Inner A) {
     std::array<std::size_t, inner> pivots{};
@@ -143,16 +144,17 @@ Inner inverse_of(Inner A) {
     return A;
 }
 
-/// Returns the greatest sum of the sizes of a column.
+/// Returns the greatest column sum of magnitudes (the 1-norm).
 template <class Matrix>
 double norm_of(const Matrix& A) {
     return A.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-/// The size of a matrix without the unit one, if its inverse is right to rounding; otherwise 0.
+/// The norm of A - 1 (unit matrix) if the inverse is accurate to rounding; otherwise 0.
 template <class Matrix>
 double size_if_well(const Matrix& A, const Matrix& inverse) {
-    constexpr double well = 18.75;  // times the rows: errors of an inverse are its condition times rounding at most
+    // limit of condition per row: the error of an inverse is at most its condition times rounding
+    constexpr double well = 18.75;
     if (!(norm_of(A) * norm_of(inverse) < well * static_cast<double>(A.rows()))) return 0;
     return 2 * norm_of(Matrix(A - Matrix::Identity(A.rows(), A.cols()))) + rounding;
 }
@@ -201,7 +203,7 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
     };
     std::vector<double> above, below;
     for (std::size_t c = 0; c < columns; ++c) {
-        // The values of y that go together, and how widely they move on the segment.
+        // The entries of y that move together, and their range of motion on the segment.
         std::vector<std::pair<std::size_t, double>> moved;
         if (c < 2 * groups) {
             const std::size_t from = c < groups ? 0 : n;
@@ -219,7 +221,8 @@ bool Newton::find(const Segment& s, const Mode& mode, const Frame& frame, std::s
             way = std::max(way, s.h * std::fabs(rate) / std::fabs(by));
             spread = std::max(spread, (std::fabs(y[k]) + s.h * std::fabs(rate)) / std::fabs(by));
         }
-        // Farther than the motion of the stretch a function may be another, as a narrow pulse.
+        // The increment stays within the motion of the stretch: farther away the function may differ, as in a narrow
+        // pulse.
         const double clear = std::clamp(way, least_difference * spread, most_difference * spread);
         const double rough =
             c < 2 * groups ? s.h * noise / frame.inertia[c % groups] : s.h * floor.noise[n + (c - 2 * groups)];
@@ -309,7 +312,7 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
     }
 }
 
-/// The order of Cuthill and McKee: the neighbours of each follow it, those with fewer of their own first.
+/// Finds the order of Cuthill and McKee: the neighbours of each unknown follow it, those with few neighbours first.
 void Newton::find_order(Eigen::Index groups) {
     const Eigen::Index rows = slopes_.rows();
     const auto count = static_cast<std::size_t>(rows);
@@ -373,7 +376,7 @@ bool Newton::factor_band(double h, Eigen::Index groups, Factors& made) const {
     return true;
 }
 
-/// One small matrix for each eigenvalue of the matrix that integrates.
+/// Inverts a small matrix for each eigenvalue of the integration matrix.
 void Newton::factor_modes(double h, Eigen::Index groups, Factors& made) const {
     const Eigen::Index rows = slopes_.rows();
     made.of_modes.clear();

@@ -14,7 +14,7 @@ using Nodes = cheb::Samples;
 using Series = cheb::Series<cheb::points>;
 inline constexpr std::size_t node_count = cheb::points;
 inline constexpr double rounding = std::numeric_limits<double>::epsilon();
-inline constexpr double smallest = std::numeric_limits<double>::min() / rounding;  // numbers below lose digits
+inline constexpr double smallest = std::numeric_limits<double>::min() / rounding;  // smaller numbers lose digits
 
 inline double greatest(const Nodes& values) {
     double most = 0;
@@ -35,10 +35,10 @@ inline void add(Nodes& sum, const Nodes& values, double by) {
 /// The side of a break: the limits from the left and from the right differ.
 enum class Side { before, at, after };
 
-/// The nodes of a stretch.
+/// The times of a stretch's nodes.
 struct NodeTimes {
     Nodes times{}, rests{};  ///< times, and their rounding errors
-    double h = 0;            ///< half of its length
+    double h = 0;            ///< half the length of the stretch
     bool from_break = false, to_break = false;
 
     [[nodiscard]] Side side(std::size_t node) const {
@@ -55,11 +55,12 @@ inline double towards(double t, Side side) {
 
 /// Rounds a half length down to one of a few steps, for which matrices are cached.
 inline double rung(double h, double longest) {
-    constexpr double rungs = 4;  // to a factor of two
+    constexpr double rungs = 4;  // steps per factor of two
     return h >= longest ? longest : longest * std::exp2(std::floor(rungs * std::log2(h / longest)) / rungs);
 }
 
-/// A bound of the error of a series from the rounding of times far from t = 0. A jump counts with its height only.
+/// A bound of the error of a series from the rounding of times far from t = 0. For a jump the error is limited to its
+/// height.
 inline double lost_in_time(const Series& series, double late, double h, double most) {
     double slope = 0;
     for (std::size_t k = 1; k < node_count; ++k) slope += static_cast<double>(k * k) * std::fabs(series[k]);

@@ -10,7 +10,7 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double most_noise_of_rate = 64;  // times the tolerance; of what is noisier than that the run says so
+constexpr double most_noise_of_rate = 64;  // multiple of the tolerance; a rougher rate ends the run with a message
 
 }  // namespace
 
@@ -59,14 +59,14 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
         const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
         const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
         const double size = i < n ? sizes[i] : greatest(values);
-        // A motion dies out, but the rounding of the terms that make its torques does not.
+        // When a motion decays, the rounding of the terms in its torques remains.
         const double ever = std::max(greatest(values), floor_.greatest[i]);
         const double most = of_time ? most_noise * size
                             : i < n ? most_noise_of_motion * ever
                                     : most_noise_of_rate * tolerance * ever;
         double& noise = floor_.noise[i];
         if (!(tail > tolerance * size)) continue;
-        // The motion may be nothing beside the numbers that its functions calculate with.
+        // The motion may be negligible against the numbers that its functions calculate with.
         const auto is_rounding = [&] {
             if (known.empty()) known = proofs.roundings(s, mode);
             return tail <= few_roundings * known[i] && noise < 2 * tail;
@@ -81,8 +81,8 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             continue;
         }
         if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
-        // Also where it has steps, on which shorter stretches are smooth. What is not read may round as much as the
-        // greatest that has acted.
+        // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
+        // like the greatest value so far.
         if (tail <= rounding * ever || is_rounding()) {
             noise = std::max(2 * tail, known.empty() ? 0 : known[i]), any = true;
             continue;

@@ -1,4 +1,4 @@
-// The place of a run in time: the motion, and the modes of its contacts.
+// The present of a run: its time, its state and the modes of its contacts.
 #pragma once
 
 #include <algorithm>
@@ -12,14 +12,14 @@
 
 namespace dinal::motion::engine {
 
-/// The present of a run, as a value. It decides nothing and reports nothing.
+/// A value type without any logic of decisions or reports.
 struct Now {
     Clock t;
     bool after_break = false;              ///< functions are evaluated from the right of a break
     std::vector<double> y{};               ///< angles, velocities, states
-    std::vector<double> low{};             ///< the digits that the angles have rounded off
-    Mode mode{};                           ///< of the contacts
-    std::vector<double> rigid_at{};        ///< the angle of each rigid joint, which it keeps
+    std::vector<double> low{};             ///< rounding errors of the angles
+    Mode mode{};                           ///< mode of the contacts
+    std::vector<double> rigid_at{};        ///< the fixed angle of each rigid joint
     std::vector<BeltSlope> belt_slopes{};  ///< the acceleration of each joint's belt
 
     [[nodiscard]] Side side() const { return after_break ? Side::after : Side::at; }
@@ -29,22 +29,22 @@ struct Now {
     [[nodiscard]] double slip(const Mechanics& mechanics, std::size_t joint) const {
         return mechanics.velocity(joint, y) - mechanics.belt(joint, t.hi, side());
     }
-    /// Returns the way from the angle of a joint to a place, with the digits that angles have rounded off.
+    /// Returns the distance from the angle of a joint to `place`, including the rounding errors of the angles.
     [[nodiscard]] double gap(const model::Joint& joint, double place) const {
         return (place - joint.sum(y)) - joint.sum(low);
     }
     [[nodiscard]] double greatest_of_state() const;
-    /// Returns the state for functions that jump at slip 0: joints that leave slip 0 have the smallest velocity that
-    /// way. That is y if none leaves, and otherwise `made`.
+    /// Returns the state for functions that jump at slip 0: joints that leave slip 0 get the smallest velocity in their
+    /// direction. The result is y if none leaves, otherwise `made`.
     const std::vector<double>& departing(const model::System& system, std::vector<double>& made) const;
-    /// Returns the velocity of the belt, or, where it passes zero, the smallest velocity in its direction.
+    /// Returns the velocity of the belt, or, if it passes zero, the smallest velocity in its direction.
     [[nodiscard]] double belt_heading(const Mechanics& mechanics, std::size_t joint) const;
     /// Returns whether the velocity of the belt is zero within the rounding of the time.
     [[nodiscard]] bool belt_sets_off(const Mechanics& mechanics, std::size_t joint) const;
 
-    /// Makes rigid joints keep the angles that they have.
+    /// Fixes the angles of rigid joints at their present values.
     void keep_rigid_places(const model::System& system);
-    /// Puts one body where the angle of the joint is at this place.
+    /// Sets the angle of the body `child` so that the joint is at `place`.
     void put_child(const model::Joint& joint, std::size_t child, double weight, double place);
 };
 

@@ -6,7 +6,8 @@
 namespace dinal::motion::engine {
 
 void Pace::shorten(double half, double unresolved, double longest_now) {
-    constexpr double slightly = 16;  // times the tolerance: such an error limits the length of the next stretches
+    // multiple of the tolerance: an error up to this also limits the length of the next stretches
+    constexpr double slightly = 16;
     constexpr int limited_stretches = 12;
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;
     h = half * std::clamp(factor, 0.5, 0.9);

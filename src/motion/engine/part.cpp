@@ -54,7 +54,8 @@ public:
     [[nodiscard]] std::vector<double> states_at(double t) const override {
         const std::vector<double> y = history_->at(t);
         const auto first = y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies);
-        return {first, first + static_cast<std::ptrdiff_t>(states_)};  // the states of bristles follow
+        // the bristles' states come last and are left out
+        return {first, first + static_cast<std::ptrdiff_t>(states_)};
     }
     [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
     [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
@@ -79,8 +80,8 @@ bool rubs(const model::Joint& joint) {
     return !joint.friction.none() && joint.friction.bending() == nullptr;
 }
 
-/// Returns whether every turn of the joint's angle is an event. Not on a belt, nor without own dry friction if its
-/// bodies rub elsewhere; an impact at another joint may also reverse this one.
+/// Returns whether every turn of the joint's angle is an event. This fails on a belt, or for a body without dry
+/// friction of its own that rubs elsewhere, as an impact at another joint may also reverse it.
 bool turns_are_events(const model::System& system, const model::Drive& drive, std::size_t joint) {
     if (!drive.belts[joint].components().empty()) return false;
     const model::Joint& own = system.joints[joint];
@@ -91,7 +92,7 @@ bool turns_are_events(const model::System& system, const model::Drive& drive, st
     });
 }
 
-/// The columns of a joint, without its name before them.
+/// The names of a joint's columns, without the joint's name.
 std::vector<std::string> names_at(const model::System& system, const model::Drive& drive, std::size_t joint) {
     const auto columns = columns_of(system.is_link(joint));
     std::vector<std::string> names;
@@ -102,7 +103,7 @@ std::vector<std::string> names_at(const model::System& system, const model::Driv
     return names;
 }
 
-/// The columns of a joint, and the acceleration of a body.
+/// The rows of a joint's columns, followed by the acceleration of a body.
 Rows rows_at(const model::System& system, const Run& run, std::size_t joint, const std::vector<std::string>& names,
              std::size_t states) {
     const std::size_t rows = run.rows.table().size(), more = system.is_link(joint) ? 0 : 1;
@@ -120,7 +121,7 @@ Rows rows_at(const model::System& system, const Run& run, std::size_t joint, con
     return Rows(std::move(table));
 }
 
-/// Fills in what one joint sees of a run: the members from `initial` on.
+/// Fills in a joint's view of a run: the members from `initial` on.
 void see(Run& run, const model::System& system, const model::Drive& drive, std::size_t joint,
          const std::optional<model::Oscillator>& seen) {
     const Left& left = *run.left;
@@ -133,7 +134,7 @@ void see(Run& run, const model::System& system, const model::Drive& drive, std::
     run.began_open = rubs(system.joints[joint]) && left.begun.rubs[joint] == 0;
     run.on_belt = !turns_are_events(system, drive, joint);
     if (const auto& walls = system.joints[joint].walls) run.restitution = walls->restitution;
-    if (system.joints[joint].stops) run.restitution = -1;  // at an elastic wall the velocity continues
+    if (system.joints[joint].stops) run.restitution = -1;  // an elastic wall does not change the velocity
     if (seen) run.course = std::make_shared<PartCourse>(*seen, place, drive.states.size(), run);
 }
 

@@ -5,7 +5,7 @@
 
 namespace dinal::motion::engine {
 
-/// Runs the problem. The columns of its states follow the others.
+/// Runs the problem. The columns of the user's states follow the others.
 Run run(const Problem& problem, const Cut& cut);
 
 }  // namespace dinal::motion::engine

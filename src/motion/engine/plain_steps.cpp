@@ -12,18 +12,18 @@ namespace dinal::motion::engine {
 
 using model::Motion;
 
-/// The motion and the torques on some steps, at the beginning of each and at the end of the last.
+/// The motion and torques at the start of some successive steps and at the end of the last.
 struct Made {
     std::vector<model::State> y{};
     std::vector<double> accelerations{}, M{}, friction{};  ///< friction as a torque against the motion
-    std::vector<double> middle_M{}, middle_friction{};     ///< in the middle of each step
-    std::size_t m = 0;                                     ///< states
+    std::vector<double> middle_M{}, middle_friction{};     ///< at the middle of each step
+    std::size_t m = 0;                                     ///< number of states
     std::vector<double> states{}, rates{};
 
     [[nodiscard]] StepInterpolant between(std::size_t i, double h) const {
         return {h, y[i], accelerations[i], y[i + 1], accelerations[i + 1]};
     }
-    /// M and friction are parabolas through their samples.
+    /// Adds the work of part of a step, with M and friction as parabolas through their samples.
     void add_work(std::size_t i, double h, double length, double damping, Work& sum) const {
         constexpr std::array<std::pair<double, double>, 5> gauss{{{0.046910077030668004, 0.11846344252809454},
                                                                   {0.23076534494715845, 0.23931433524968324},
@@ -45,13 +45,13 @@ struct Made {
 
 namespace {
 
-/// A value at the part s of a step of length h, from values and rates at both ends.
+/// The Hermite cubic at the fraction s of a step of length h, from values z and rates r at both ends.
 double cubic(double s, double h, double z0, double r0, double z1, double r1) {
     const double d = z1 - z0, v0 = h * r0, v1 = h * r1;
     return z0 + s * (v0 + s * ((3 * d - 2 * v0 - v1) + s * (v0 + v1 - 2 * d)));
 }
 
-/// The steps n, n + 1, ... of a run.
+/// The `count` steps of a run from step n on.
 class StepsOfRun : public Remade {
 public:
     StepsOfRun(const StepTimes& steps, std::size_t n, std::size_t count, double damping)
@@ -72,7 +72,7 @@ public:
     }
     [[nodiscard]] std::function<Work(double)> works() const override {
         const auto made = first_steps(count_);
-        std::vector<Work> sums(count_ + 1);  // up to each step
+        std::vector<Work> sums(count_ + 1);  // work up to each step
         for (std::size_t i = 0; i < count_; ++i) {
             sums[i + 1] = sums[i];
             made->add_work(i, steps_.h, steps_.h, damping_, sums[i + 1]);
@@ -95,7 +95,7 @@ protected:
     double damping_;
 };
 
-/// Steps of functions are kept: these may have changed since.
+/// Stores the steps, because user functions may have changed when they are evaluated again.
 class StepsKept final : public StepsOfRun {
 public:
     StepsKept(const StepTimes& steps, std::size_t n, std::size_t count, double damping, Made made)
@@ -110,10 +110,10 @@ private:
     std::shared_ptr<const Made> made_;
 };
 
-/// Affine steps are made again from their beginning when their motion is asked for.
+/// Recomputes affine steps from their start when their motion is evaluated.
 class StepsAgain final : public StepsOfRun {
 public:
-    /// The steps first to last of a block that begins with step n of the run.
+    /// The steps `first` to `last` of a block that begins with step n of the run.
     StepsAgain(const AffineBlock& block, const StepTimes& steps, std::size_t n, std::size_t first, std::size_t last,
                double friction, const model::Excitation& M, std::vector<double> states, std::vector<double> rates)
         : StepsOfRun(steps, n + first, last - first, block.map.c / block.inverse_inertia),
@@ -125,7 +125,7 @@ public:
           M_(M),
           states_(std::move(states)),
           rates_(std::move(rates)) {
-        if (!M.has_script()) return;  // a function may have changed since
+        if (!M.has_script()) return;  // a user's function may have changed since
         const auto* samples = block.samples.data();
         samples_.assign(samples + 2 * first, samples + 2 * last);
     }
@@ -163,7 +163,7 @@ private:
     model::State begin_;
     double friction_, M_begin_;
     model::Excitation M_;
-    std::vector<double> samples_, states_, rates_;  ///< states at the beginning; their rates are constant
+    std::vector<double> samples_, states_, rates_;  ///< states at the start; their rates are constant
 };
 
 }  // namespace
@@ -191,11 +191,11 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     if (constant_rates_.size() < m_) constant_rates_.clear();
     affine_ = even_friction_ && !load.asks_the_motion() && constant_rates_.size() == m_;
     const bool remembers = load.relays() > 0 || !load.delays().empty() || load.has_sampled();
-    // Rows of a named body have accelerations, which are made of those torques only.
+    // Rows of a named body include accelerations, which plain steps compute from these torques only.
     possible_ = possible_ && !remembers && !mechanics.may_open(0) && !mechanics.has_normal(0) && !joint_.rigid &&
                 !mechanics.has_belts() && !mechanics.has_base() && (even_friction_ || problem.joined_elsewhere);
     for (const model::WantedEvent& event : problem.drive.events) {
-        possible_ = possible_ && event.when->read() != nullptr;  // otherwise nobody knows where it stays clear of zero
+        possible_ = possible_ && event.when->read() != nullptr;  // otherwise its distance from zero cannot be bounded
     }
     if (!possible_) return;
     if (!affine_) accelerations_.resize(AffineBlock::most + 1);
@@ -216,7 +216,7 @@ bool PlainSteps::take(const Of& of, double until) {
     return t == steps_.time(steps_.at(t)) ? of.now.t.lo == 0 && take_steps(of, until) : take_rest_of_step(of, until);
 }
 
-/// After an event: to the end of its step, by a step of that length.
+/// Completes the step that an event has interrupted by a step of the remaining length.
 bool PlainSteps::take_rest_of_step(const Of& of, double until) {
     const double t = of.now.t.hi, end = steps_.time(steps_.at(t) + 1);
     if (!(end - t > 1e-3 * steps_.h) || !(end < until)) return false;
@@ -227,7 +227,7 @@ bool PlainSteps::take_rest_of_step(const Of& of, double until) {
     const bool took = take_steps(of, until);
     is_rest_of_step_ = false;
     steps_ = whole, block_.map = map;
-    // The samples of this step are gone.
+    // The samples of this step are overwritten.
     sampled_ = steps_.at(t) > sampled.from ? sampled : decltype(sampled_){0, 0};
     return took;
 }
@@ -238,7 +238,7 @@ bool PlainSteps::take_steps(const Of& of, double until) {
     const std::size_t most = waits ? tries_ : AffineBlock::most;
     const std::size_t n = steps_.at(now.t.hi);
     if (!(n >= sampled_.from && n < sampled_.to &&
-          steps_.time(sampled_.to) < until)) {  // an event leaves samples that are still good
+          steps_.time(sampled_.to) < until)) {  // after an event the samples are still valid
         std::size_t count = std::min(AffineBlock::most, steps_.count - n);
         if (n + count == steps_.count && !is_rest_of_step_) --count;  // the last step may be shorter
         while (count > 0 && !(steps_.time(n + count) < until)) count /= 2;
@@ -273,7 +273,7 @@ bool PlainSteps::take_steps(const Of& of, double until) {
     return true;
 }
 
-/// Returns whether all that functions give is finite: the acceleration, the rates of states, M.
+/// Evaluates acceleration, rates of states, and M. Returns false if one is not finite.
 bool PlainSteps::find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const {
     rates[0] = at.y[1];
     if (!affine_) {
@@ -287,7 +287,7 @@ bool PlainSteps::find_rates(const Mode& mode, const Moment& at, double* rates, d
     return std::all_of(rates + 2, rates + 2 + m_, [](double rate) { return std::isfinite(rate); });
 }
 
-/// The values at the beginning of a step, from which others follow.
+/// Evaluates the functions at the start of a sequence of steps.
 bool PlainSteps::begin_functions(const Of& of, std::size_t i) {
     if (affine_ && m_ == 0) return true;
     const Moment at{of.now.t.hi, of.now.side(), of.departing};
@@ -300,8 +300,8 @@ bool PlainSteps::begin_functions(const Of& of, std::size_t i) {
     return true;
 }
 
-/// Makes step i of the classical method. Returns false if something is not finite or, with a direction, if the velocity
-/// may not keep it, or reach a corner of the law of friction.
+/// Makes step i of the classical method. Returns false if a value is not finite or, with a direction, if the velocity
+/// may leave it or reach a corner of the friction law.
 bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
     const std::size_t size = 2 + m_;
     const double h = steps_.h, t = time(i);
@@ -327,7 +327,8 @@ bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
         point_[j] = value(j) + h / 6 * (k[j] + 2 * k[size + j] + 2 * k[2 * size + j] + k[3 * size + j]);
     if (leaves(point_[1])) return false;
     if (!find_rates(of.now.mode, {time(i + 1), Side::at, point_}, slopes_.data(), M)) return false;
-    if (direction * accelerations_[i] < 0 && direction * slopes_[1] > 0) return false;  // it may have dipped below zero
+    // the velocity may have dipped below zero
+    if (direction * accelerations_[i] < 0 && direction * slopes_[1] > 0) return false;
     block_.theta[i + 1] = point_[0], block_.velocity[i + 1] = point_[1];
     accelerations_[i + 1] = slopes_[1], block_.M[i + 1] = block_.samples[2 * i + 1] = M;
     std::copy_n(point_.begin() + 2, m_, states(i + 1));
@@ -335,13 +336,13 @@ bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
     return true;
 }
 
-/// Beside an affine step the states have constant rates.
+/// Advances the states, whose rates are constant, with an affine step.
 void PlainSteps::step_states(std::size_t i) {
     for (std::size_t k = 0; k < m_; ++k)
         states(i + 1)[k] = states(i)[k] + steps_.h * constant_rates_[k], rates(i + 1)[k] = constant_rates_[k];
 }
 
-/// The motion does not come nearer to a wall than it may go in a step.
+/// Returns whether the motion stays clear of walls during a step.
 bool PlainSteps::clear_of_walls(std::size_t i, double reach) const {
     const model::Walls* walls = joint_.any_walls();
     if (walls == nullptr) return true;
@@ -349,8 +350,8 @@ bool PlainSteps::clear_of_walls(std::size_t i, double reach) const {
     return block_.theta[i] + far < walls->upper && block_.theta[i] - far > walls->lower;
 }
 
-/// Returns whether certainly nothing happens on these steps but their motion: no event of the user, no change of a
-/// condition. Between their ends values change by no more than twice what their rates there say.
+/// Returns whether certainly no user event and no change of a condition happens in these steps. Between the ends of a
+/// step, values may change by twice as much as the rates at its ends indicate.
 bool PlainSteps::is_calm(const Of& of, std::size_t first, std::size_t last) {
     const double h = steps_.h;
     const bool stands = of.now.mode.holds(0);
@@ -373,7 +374,7 @@ bool PlainSteps::is_calm(const Of& of, std::size_t first, std::size_t last) {
     return of.users.stay_clear(ranges_) && of.conditions.stay_clear(ranges_, of.now.here());
 }
 
-/// Returns the step up to which nothing happens from `first` on.
+/// Returns the step up to which certainly nothing happens from `first` on.
 std::size_t PlainSteps::calm_until(const Of& of, std::size_t first, std::size_t last) {
     if (first == last || (!watches_ && !of.conditions.any()) || is_calm(of, first, last)) return last;
     std::size_t calm = first, busy = last;
@@ -386,7 +387,7 @@ std::size_t PlainSteps::calm_until(const Of& of, std::size_t first, std::size_t 
 }
 
 /// Moves in one direction from step `begin` of the block on; without dry friction it also turns. Returns the step at
-/// which it stops, `stop` at the latest.
+/// which it stops, at most `stop`.
 std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, Motion way) {
     const std::size_t n = sampled_.from;
     const bool rubs = of.now.rubs(0);
@@ -418,14 +419,14 @@ std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, 
     return i;
 }
 
-/// Without dry friction a step in which the velocity clearly changes its sign once is a step like any other, and a turn
-/// is recorded.
+/// Without dry friction, continues through a step in which the velocity clearly changes its sign once, and records the
+/// turn.
 bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
     if (!affine_ && !step_functions(of, i, 0)) return false;
     const model::State y = block_.at(i), y1 = affine_ ? block_.end_of(i) : block_.at(i + 1);
     const double h = steps_.h, a = acceleration(i, y), a1 = acceleration(i + 1, y1);
     const double direction = model::sign_of(model::motion_of(y.velocity));
-    constexpr double clearly = 1e-9;  // of what it is the sum of
+    constexpr double clearly = 1e-9;  // relative to the terms of the acceleration
     const double M = affine_ ? std::fabs(block_.forcing[i]) : std::fabs(block_.M[i]) * block_.inverse_inertia;
     const double least = clearly * (block_.map.w * std::fabs(y.theta) + M) + 1e-280;
     const bool once = direction * a < -least && direction * a1 < -least && direction * y1.velocity < 0;
@@ -450,7 +451,7 @@ double PlainSteps::M_at(std::size_t i, double t, const model::State& y) {
     return mechanics_.loads().front().value({t, Side::at, point_});
 }
 
-/// Makes `point_` the state within step i, where the motion is this one.
+/// Sets `point_` to the state within step i for the motion y.
 void PlainSteps::put_state(std::size_t i, double t, const model::State& y) {
     const double h = steps_.h, s = (t - time(i)) / h;
     point_[0] = y.theta, point_[1] = y.velocity;
@@ -460,7 +461,7 @@ void PlainSteps::put_state(std::size_t i, double t, const model::State& y) {
     }
 }
 
-/// Stands while the pull is well within the limits.
+/// Stands still as long as the pull is well within the limits.
 std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) {
     const Moment here = of.now.here();
     const double forward = mechanics_.holding(0, Motion::forward, here);
@@ -491,7 +492,7 @@ std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) 
     return i;
 }
 
-/// Writes the rows of these steps. Returns the step at one of whose rows M is not finite, or the last one.
+/// Writes the rows of these steps. Returns the step at one of whose rows M is not finite, otherwise `last`.
 std::size_t PlainSteps::rows(const Of& of, std::size_t n, std::size_t first, std::size_t last, bool stands) {
     for (std::size_t i = first; i < last;) {
         const double t = of.recorder.next_row_time(), end = steps_.time(n + i + 1);
@@ -517,7 +518,7 @@ std::size_t PlainSteps::rows(const Of& of, std::size_t n, std::size_t first, std
     return last;
 }
 
-/// Keeps these steps of the block.
+/// Stores these steps of the block in the history.
 void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool stands) {
     if (first == last || !problem_.limits.dense) return;
     const std::size_t n = sampled_.from;
@@ -525,7 +526,7 @@ void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool st
     Kept kept{
         .start = {from, 0}, .h = length / 2, .length = length, .begin = {block_.theta[first], block_.velocity[first]}};
     kept.begin.insert(kept.begin.end(), states(first), states(first) + m_);
-    const bool constant = m_ == 0 || !constant_rates_.empty();  // rates
+    const bool constant = m_ == 0 || !constant_rates_.empty();  // whether the rates are constant
     if (stands && constant) {
         kept.series.resize(2 + m_);
         for (std::size_t k = 0; k < m_; ++k)
@@ -564,7 +565,7 @@ Made PlainSteps::made(const Of& of, std::size_t first, std::size_t last, bool st
         const double a1 = stands ? 0 : acceleration(i + 1, y1), t = time(i) + h / 2;
         const model::State middle = StepInterpolant(h, y, a, y1, a1)(h / 2);
         made.middle_friction.push_back(friction_at(i, t, middle));
-        // The stages of a step are beside the motion: M there is what makes it.
+        // The stages of a step are slightly off the motion, so M follows from the acceleration.
         const double between = 1.5 * (y1.velocity - y.velocity) / h - (a + a1) / 4;
         made.middle_M.push_back(affine_ || stands
                                     ? block_.samples[2 * i]

@@ -1,5 +1,5 @@
-// Steps of rk4 on which nothing happens, of one body: blocks of affine maps where the torque is one of the time and the
-// spring a straight line, and otherwise steps of functions of the motion.
+// Fast steps of rk4 for one body while no event happens: blocks of affine maps if the spring is linear and the other
+// torques depend on time only, otherwise steps that evaluate the functions of the motion.
 #pragma once
 
 #include <vector>
@@ -16,25 +16,25 @@ namespace dinal::motion::engine {
 
 struct Made;
 
-/// Goes on from step to step until something may happen in the next one: that is left to the loop, with all decisions.
+/// Takes steps until an event is possible in the next one, which is left to the general loop.
 class PlainSteps {
 public:
     PlainSteps(const Request& problem, const Mechanics& mechanics);
 
     struct Of {
         Now& now;
-        const std::vector<double>& departing;  ///< the state for functions that jump at slip 0
+        const std::vector<double>& departing;  ///< state for functions that jump at slip 0
         Contacts& contacts;
         Walls& walls;
         UserEvents& users;
         Conditions& conditions;
         Recorder& recorder;
     };
-    /// Returns whether it may take steps from here.
+    /// Returns whether plain steps are possible from here.
     [[nodiscard]] bool may_begin(const Now& now) const;
-    /// Takes steps that end before the time `until`. Returns whether it took any.
+    /// Takes steps that end before `until`. Returns whether it took any.
     bool take(const Of& of, double until);
-    /// Returns the longest time between two looks at M.
+    /// Returns the longest time between two samples of M.
     [[nodiscard]] double gap() const { return steps_.h / 2; }
 
 private:
@@ -52,7 +52,7 @@ private:
 
     bool take_steps(const Of& of, double until);
     bool take_rest_of_step(const Of& of, double until);
-    // Steps of functions.
+    // Steps that evaluate functions.
     bool find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const;
     bool begin_functions(const Of& of, std::size_t i);
     bool step_functions(const Of& of, std::size_t i, double direction);
@@ -68,23 +68,23 @@ private:
     const Mechanics& mechanics_;
     const model::Joint& joint_;
     const model::Excitation& M_;
-    std::size_t m_;  ///< states
+    std::size_t m_;  ///< number of states
     bool possible_, affine_, watches_;
-    bool even_friction_;  ///< constant in one direction, and the spring is a straight line
+    bool even_friction_;  ///< whether friction is constant in each direction and the spring linear
     StepTimes steps_;
     AffineBlock block_;
     struct {
         std::size_t from = 0, to = 0;
-    } sampled_;                ///< the steps of the block
+    } sampled_;                ///< range of steps in the block
     double friction_ = 0;      ///< torque of the present motion
-    model::SpeedRange range_;  ///< of the law of friction, in which steps of functions stay
+    model::SpeedRange range_;  ///< speed range of the friction law that steps must not leave
     struct {
         double t = -model::never, M = 0;
-    } end_;  ///< of the last step
-    // Of functions, at the beginning of each step.
+    } end_;  ///< end of the last step
+    // Values at the start of each step, for steps that evaluate functions.
     std::vector<double> accelerations_, states_, rates_;
-    std::vector<double> constant_rates_;  ///< of all states, if these are constant
-    std::size_t tries_ = 8;               ///< steps at once, where something may happen in any of them
+    std::vector<double> constant_rates_;  ///< rates of all states if they are constant
+    std::size_t tries_ = 8;               ///< number of steps to try at once if any of them may contain an event
     bool is_rest_of_step_ = false;
     std::vector<double> point_, slopes_;
     Ranges ranges_;

@@ -1,4 +1,4 @@
-// The ranges in which a motion stays on some steps, and what functions that are read do there.
+// Bounds of a motion over some steps, and of formulas on it.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@ namespace dinal::motion::engine {
 
 struct Ranges {
     model::bounds::Interval t;
-    std::vector<model::bounds::Interval> y{};  ///< of all of y
+    std::vector<model::bounds::Interval> y{};  ///< ranges of all entries of y
 
-    /// Returns a range of the function, on its piece if it has one, or of what decides the condition at this step of
-    /// it. None if it is not known. `named`: it is given all of y as states.
+    /// The range of the formula, on its piece if given, or of the quantity that decides `condition`; empty if unknown.
+    /// `named`: the formula receives all of y as states.
     [[nodiscard]] std::optional<model::bounds::Interval> of(const model::Formula* formula,
                                                             const model::terms::Piece* piece, bool named,
                                                             double delay = 0,

@@ -64,7 +64,7 @@ void Recorder::tell_slide(const Now& now, const SlideChange& change) {
     }
 }
 
-/// Returns whether there was such an event at this time, which is none after all.
+/// Withdraws an event of this kind at this time. Returns whether there was one.
 bool Recorder::is_none(EventKind kind, std::size_t joint, double t) {
     const auto told = std::find_if(recent_.rbegin(), recent_.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
@@ -74,8 +74,8 @@ bool Recorder::is_none(EventKind kind, std::size_t joint, double t) {
     return true;
 }
 
-/// Of stops and slips that followed each other at once, and led nowhere, only the first is an event. At an end as it
-/// should be what creeps sticks; at a rest the last stick is that.
+/// Removes all but the first of stops and slips that followed one another without progress. At a regular end a creep is
+/// recorded as a stick; at rest the last stick becomes a rest.
 void Recorder::end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts) {
     constexpr double soon = 1e-6;
     const auto follows = [&](const Event& e, const Event& before) {
@@ -123,7 +123,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     const Nodes& v = segment.y[n() + body];
     const double moving = greatest(v);
     const auto exact = [&](double x) { return segment.at(n() + body, x); };
-    constexpr double underflow = 1e-280;  // numbers so small lose their digits
+    constexpr double underflow = 1e-280;  // smaller numbers lose digits
     if (!(moving > std::max(nothing, underflow))) return;
     Half half = static_cast<int>(heading_[body]);
     Series series = segment.series[n() + body];
@@ -138,7 +138,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
         zeros.push_back(*x);
         half = -half;
     }
-    // Between two zeros it may be no more than the error of a series that fits what comes before or after.
+    // Between two zeros the velocity may be only the error of a series that fits the motion before or after.
     const auto moves = [&](std::size_t k) {
         const double from = zeros[k], to = k + 1 < zeros.size() ? zeros[k + 1] : until;
         double most = std::fabs(exact((from + to) / 2));
@@ -148,7 +148,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
         return most > 8 * problem_.tolerance * moving;
     };
     int way = static_cast<int>(heading_[body]);
-    bool moved = false;  // on the stretch
+    bool moved = false;  // whether the body has moved on the stretch
     for (std::size_t k = 0; k < zeros.size(); ++k) {
         const int next = (zeros.size() - 1 - k) % 2 == 0 ? half : -half;
         const bool clear = moves(k), at_end = k + 1 == zeros.size() && moved;
@@ -233,7 +233,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         double torque = -mechanics_.joint_torque(j, at, now.mode, belt);
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
         if (now.mode.holds(j)) torque += balance_.holding[j];
-        const bool kept = now.mode.rigid[j] != 0;  // to the letter
+        const bool kept = now.mode.rigid[j] != 0;  // rigid joints keep their angle exactly
         row.y = {kept ? now.rigid_at[j] : mechanics_.angle(j, y), kept ? 0 : mechanics_.velocity(j, y)};
         row.torque = torque;
         row.friction = friction(now, j, at, balance_);
@@ -251,9 +251,9 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
     return good;
 }
 
-/// The torque of a joint's friction on its first body.
+/// The friction torque of a joint on its first body.
 double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const {
-    // The wall carries what presses against it, friction what pulls away from it.
+    // A wall carries the load that presses against it, friction the load that pulls away from it.
     if (now.rubs(joint) && now.mode.friction[joint].way == Motion::stuck) {
         const double held = balance.holding[joint] - mechanics_.slider_torque(joint, at.y);
         return now.mode.leans[joint] != 0 && now.mode.leans[joint] * held <= 0 ? 0.0 : held;
@@ -264,7 +264,7 @@ double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, c
 void Recorder::keep(const Now& now, const Segment& segment, double length, double longest_delay) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay == 0)) return;
     Kept kept{.start = segment.start, .h = segment.h, .length = length, .begin = now.y, .series = segment.series};
-    // For the legs of its course.
+    // The torques are needed for the legs of the course.
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
     const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
     history_->add(std::move(kept), problem_.limits.dense, past);
@@ -280,12 +280,12 @@ void Recorder::finish(const Now& now, const Contacts& contacts, std::shared_ptr<
     result_.left = std::move(left_);
 }
 
-/// Returns the torques that act at each joint on the stretch.
+/// Returns the torques at each joint over the stretch.
 std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segment) {
     std::vector<Kept::Acting> all(mechanics_.joints());
     for (std::size_t j = 0; j < all.size(); ++j) {
         all[j].M = segment.driven[j];
-        // Functions of the motion were evaluated before the last step of the iteration.
+        // Functions of the motion were last evaluated before the final step of the iteration.
         for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].asks_the_motion(); ++node) {
             all[j].M[node] = segment.loads[j][node] + mechanics_.loads()[j].of_motion(segment.moment(node, point_));
         }
@@ -298,7 +298,7 @@ std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segmen
             }
         }
         all[j].holds = now.rubs(j) && now.mode.leans[j] == 0 && now.mode.friction[j].way == Motion::stuck;
-        if (j >= told_joints()) {  // what moves a body is its input
+        if (j >= told_joints()) {  // the torque that moves a prescribed body counts as its input
             const std::size_t body = moved_body(j);
             const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
             for (std::size_t node = 0; node < node_count; ++node) {
@@ -313,7 +313,7 @@ std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segmen
     return all;
 }
 
-/// Adds what springs of sliders that stick, and pressed walls, take and store.
+/// Adds the torques of sticking sliders' springs and pressed walls, which store energy.
 void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const {
     acting.presses = now.mode.presses[joint] != 0;
     if (!acting.presses && now.mode.sliders.empty()) return;

@@ -11,7 +11,7 @@
 
 namespace dinal::motion::engine {
 
-/// Writes down what has happened, and decides nothing. Events are reported here only.
+/// Records events, rows and history. All events are reported here; no decision is made.
 class Recorder {
 public:
     Recorder(const Request& problem, const Mechanics& mechanics, Run& result, const Now& start, double unit);
@@ -24,52 +24,52 @@ public:
         SampledLoads& sampled;
     };
 
-    // Events. The last ones wait, because what follows may show that they are none: a joint that is let go does not
-    // leave, a load ceases to slide at once, a stick lasts for no more than rounding, or the run gets nowhere. When
-    // one comes clearly later they are written, and stay.
+    // Events. Recent events are held back, because later ones may withdraw them: a released joint does not move, a
+    // slide ends at once, a stick is shorter than rounding, or the run gets stuck. They are written when a clearly
+    // later event arrives.
     void tell(const Told& told);
     void tell(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
         tell({.event = event_at(mechanics_, now, kind, where, user)});
     }
-    /// An event of the user concerns every joint: each gets one, with its own angle and velocity.
+    /// Reports a user's event, once for each joint with the joint's angle and velocity.
     void tell_user(const Now& now, std::size_t event);
     [[nodiscard]] bool told_user_at(double t) const {
         return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
     }
-    /// A load, or the rate of a state, which concerns all joints, begins or ceases to slide along a condition. Both at
-    /// one instant are no event, nor does a slide begin where a run goes on.
+    /// Reports that a load, or the rate of a state (for all joints), begins or ends to slide along a condition. A begin
+    /// and an end at the same instant cancel, and a continued run does not report a begin at its start.
     void tell_slide(const Now& now, const SlideChange& change);
-    /// A joint that was let go at this time did not leave.
+    /// Withdraws the slip of a joint that was released at this time but did not move.
     void tell_no_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
-    /// A turn of a body without dry friction changes nothing in its motion: it is recorded only. `sizes` and `noise`
-    /// of the torques say which velocities are no motion.
+    /// Records the turns of bodies without dry friction, which do not affect the motion. `sizes` and `noise` of the
+    /// torques determine which velocities count as zero.
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
 
-    /// The direction in which each body moves that has no dry friction.
+    /// The direction of motion of each body without dry friction.
     [[nodiscard]] const std::vector<model::Motion>& heading() const { return heading_; }
     void head(std::size_t body, double velocity) { heading_[body] = model::motion_of(velocity); }
     void go_on_with(const std::vector<model::Motion>& heading) { heading_ = heading; }
 
     // Rows.
-    /// The rows of a stretch until `end`. Returns false if a value is not finite; so do the others.
+    /// Writes the rows of a stretch until `end`. Returns false, like the others, if a value is not finite.
     bool rows_until(const Stretch& of, double end, bool to_the_end);
-    /// The rows of the present, at the end of a run.
+    /// Writes the rows of the present at the end of a run.
     bool rows_at_end(const Stretch& of);
     [[nodiscard]] std::size_t next_row() const { return next_row_; }
     [[nodiscard]] double next_row_time() const {
         return next_row_ < problem_.rows.count() ? problem_.rows.time(next_row_) : model::never;
     }
-    /// The row of a plain step of one body.
+    /// Writes the row of a plain step of one body.
     void put_row(double t, const model::State& y, double M, double friction, std::span<const double> states);
 
     // History.
-    /// Keeps what was used of a stretch.
+    /// Stores the used part of a stretch.
     void keep(const Now& now, const Segment& segment, double length, double longest_delay);
     void keep(Kept kept) { history_->add(std::move(kept), true, model::never); }
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
     [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
 
-    // The beginning and the end.
+    // Beginning and end.
     void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
     void finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry);
 
@@ -77,7 +77,7 @@ private:
     void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
     bool is_none(model::EventKind kind, std::size_t joint, double t);
     void write_recent();
-    /// The place x of the segment; -2 is the present.
+    /// Writes the row at the point x of the segment; x = -2 means the present.
     bool put_row(const Stretch& of, double t, double x);
     [[nodiscard]] double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
     std::vector<Kept::Acting> acting(const Now& now, const Segment& segment);
@@ -87,7 +87,7 @@ private:
                       std::vector<model::Event>& turns);
 
     [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
-    /// The joints behind these move bodies.
+    /// The number of joints without the last ones, which impose prescribed motions.
     [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
     [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
 
@@ -96,16 +96,16 @@ private:
     Run& result_;
     std::shared_ptr<History> history_;
     std::vector<model::Event> events_, recent_;
-    double* cells_ = nullptr;  ///< the table of the rows
+    double* cells_ = nullptr;  ///< the values of the rows
     std::shared_ptr<Left> left_ = std::make_shared<Left>();
-    double unit_;  ///< of time
+    double unit_;  ///< time scale of the motion
     std::vector<model::Motion> heading_;
     std::size_t next_row_ = 0;
     Balance balance_;
     std::vector<double> row_, point_;
-    /// Room, so that a stretch need not allocate it.
+    /// Storage that is reused, to avoid allocation in each stretch.
     struct {
-        std::vector<char> rubs;  ///< of each body
+        std::vector<char> rubs;  ///< whether each body has dry friction
         std::vector<model::Event> turns;
         std::vector<double> zeros, y;
     } room_;

@@ -26,9 +26,10 @@ using model::Joint;
 using model::Motion;
 using model::Outcome;
 
-// In units of the pace.
-constexpr double shortest = 1e-13;                                       // what cannot be seen in the motion
-constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;  // bounds of a series are so much greater
+// Relative to the pace.
+constexpr double shortest = 1e-13;  // shorter times cannot affect the motion
+// margin below the overflow of a series' bounds
+constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;
 
 }  // namespace
 
@@ -143,9 +144,9 @@ void Engine::run() {
     finish();
 }
 
-/// One stretch, up to what happens first in it. The order at its end: the state and its rows, controllers, contacts
-/// that open or close, what happened, and then the decision of contacts, which reports events. Returns false if the run
-/// is over.
+/// Computes one stretch up to its first event. At its end follow, in this order: state and rows, controllers, opening
+/// and closing of contacts, the event itself, and the decision about contacts, which reports events. Returns false if
+/// the run is over.
 bool Engine::advance() {
     if (now_.greatest_of_state() > beyond_all) return fail(Outcome::state_not_finite);
     const Frame& frame = frames_->of(now_.mode);
@@ -169,7 +170,7 @@ bool Engine::advance() {
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
-/// Steps on which nothing happens need no segment.
+/// Takes steps without events, which need no segment.
 bool Engine::take_plain_steps() {
     if (pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides()) return false;
     double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
@@ -188,7 +189,7 @@ bool Engine::take_plain_steps() {
     return true;
 }
 
-/// Computes the motion on the stretch. Returns false if another stretch is to be chosen, or the run is over.
+/// Computes the motion on the stretch. Returns false if another length must be tried, or the run is over.
 bool Engine::solve(const Frame& frame) {
     using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, scratch_.departing);
@@ -227,7 +228,7 @@ bool Engine::a_belt_jumps_at(double t) const {
     return false;
 }
 
-/// On a step, of which nobody asks whether it was resolved.
+/// Searches a Runge-Kutta step, whose error is not checked, for a jump of a belt.
 bool Engine::belt_jump_found() {
     std::optional<double> first;
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -236,7 +237,7 @@ bool Engine::belt_jump_found() {
     }
     if (!first) return false;
     constexpr double right_behind = 1e-6;
-    if (now_.t.until(*first) < right_behind * segment_.h) {  // it is behind this moment, and was before it
+    if (now_.t.until(*first) < right_behind * segment_.h) {  // the jump is at the start of the step
         if (now_.after_break) return false;
         now_.after_break = true;
         mechanics_.jumps_at(now_.t.hi);
@@ -249,7 +250,7 @@ bool Engine::belt_jump_found() {
     return true;
 }
 
-/// Searches the stretch for what happens first.
+/// Searches the stretch for its first event.
 Ending Engine::watch(const Frame& frame) {
     const Guards::Of of{mechanics_, segment_,   frame,     now_,         walls_, sizes_,
                         *solver_,   *balances_, contacts_, *conditions_, users_, normal_halves_};
@@ -265,7 +266,8 @@ Ending Engine::watch(const Frame& frame) {
     return ending;
 }
 
-/// A joint was let go and does not leave: its slip is no event, and it must be pulled clearly farther.
+/// Makes a joint stick again that was released but did not move: its slip is withdrawn, and it needs a clearly larger
+/// pull.
 void Engine::hold_again(std::size_t joint, double torques) {
     recorder_->tell_no_slip(joint, now_.t.hi);
     Slipping& how = now_.mode.friction[joint];
@@ -273,8 +275,8 @@ void Engine::hold_again(std::size_t joint, double torques) {
     if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);
 }
 
-/// Something that is sampled may jump along with a condition, as a limit that two functions share: then the stretch is
-/// made again, up to there.
+/// Repeats the stretch up to a condition at x if sampled functions may jump there, too, such as a limit that two
+/// functions share.
 bool Engine::ends_before(double x) {
     constexpr double beside_end = 1e-6;
     if (!conditions_->samples() || 1 + x < beside_end || 1 - x < beside_end) return false;
@@ -285,8 +287,8 @@ bool Engine::ends_before(double x) {
     return true;
 }
 
-/// A stretch is far longer than the window of a function in which it begins: what acts there would take the motion far
-/// away, beside which the window's end is lost to rounding. Then the stretch is made again, not much longer than that.
+/// Repeats a stretch with nearly its useful length if its first event is very early. A function that acts only in a
+/// short window may take a long extrapolation so far away that the window's end is lost to rounding.
 bool Engine::comes_early(const Ending& ending) {
     constexpr double early = 1.0 / 64, least = 1.0 / 1024;
     const double part = 1 + ending.x, late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
@@ -297,7 +299,7 @@ bool Engine::comes_early(const Ending& ending) {
     return true;
 }
 
-/// Returns whether nothing that may still come moves any body.
+/// Returns whether no body can ever move again.
 bool Engine::stands_for_good(const Frame& present) {
     if (present.groups() > 0 || !present.closing.empty() || mechanics_.states() > 0 || mechanics_.has_base())
         return false;
@@ -337,7 +339,7 @@ bool Engine::stands_for_good(const Frame& present) {
     return true;
 }
 
-/// There is nothing to compute but the loads at the rows, of which there may be many.
+/// Computes the loads at the rows of a system at rest, in portions if there are many rows.
 bool Engine::rest(const Frame& present) {
     constexpr std::size_t rows_at_once = 1U << 12U;
     const bool many = problem_.rows.count() - recorder_->next_row() > rows_at_once;
@@ -350,7 +352,7 @@ bool Engine::rest(const Frame& present) {
     return end_at(1, present, sampled);
 }
 
-/// The stretch ends at x: its rows, and the present.
+/// Ends the stretch at x: writes its rows and advances the present.
 bool Engine::end_at(double x, const Frame& frame, SampledLoads& sampled) {
     const bool whole = x >= 1;
     const double length = whole ? 2 * segment_.h : segment_.h * (1 + x);
@@ -365,7 +367,7 @@ bool Engine::end_at(double x, const Frame& frame, SampledLoads& sampled) {
     return arrive(x, whole);
 }
 
-/// The present is at x of the stretch: the state, breaks that are behind, controllers, and contacts that open or close.
+/// Advances the present to x of the stretch: state, passed breaks, controllers, and contacts that open or close.
 bool Engine::arrive(double x, bool whole) {
     const double length = whole ? 2 * segment_.h : segment_.h * (1 + x);
     if (x > -1) go_to(x);
@@ -392,7 +394,7 @@ bool Engine::arrive(double x, bool whole) {
     return !changed || (decide(true) && goes_on());
 }
 
-/// The controllers that sample do so now if it is time. Returns false if one failed.
+/// Runs sampled controllers that are due. Returns false if one failed.
 bool Engine::sample_controllers() {
     bool samples = false, good = true;
     mechanics_.for_each_signal([&](const Signal& s) { samples = samples || s.has_sampled(); });
@@ -402,10 +404,10 @@ bool Engine::sample_controllers() {
     return good;
 }
 
-/// Loads, limits and belts may have jumped: what holds is asked again.
+/// Decides contacts again after a break, at which loads, limits and belts may have jumped.
 bool Engine::ask_after_break() {
     if (!mechanics_.has_belts()) return decide(true);
-    // A body that is moved with a new velocity at once throws all that is rigidly linked to it.
+    // A jump of a prescribed velocity throws all bodies that are linked to it rigidly.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
     if (problem_.hidden > 0) project(now_.side());
@@ -430,7 +432,7 @@ double Engine::kinetic_energy() const {
     return sum;
 }
 
-/// The present is at x of the stretch. What is rounded off the angles is kept: beside a wall it is seen.
+/// Sets the present to x of the stretch. The rounding errors of the angles are kept, as they matter near a wall.
 void Engine::go_to(double x) {
     for (std::size_t i = 0; i < n(); ++i) {
         const double moved =
@@ -444,7 +446,7 @@ void Engine::go_to(double x) {
     walls_.follow(problem_.system, now_);
 }
 
-/// At x of the last stretch; at a break from the right, where nothing tells them but the belts.
+/// Computes the slopes of belts at x of the last stretch or, at a break (no x), from the belts to the right of it.
 void Engine::find_belt_slopes(std::optional<double> x) {
     now_.belt_slopes.assign(mechanics_.joints(), {0, 0});
     for (std::size_t j = 0; mechanics_.has_belts() && j < now_.belt_slopes.size(); ++j) {

@@ -11,10 +11,10 @@
 
 namespace dinal::motion::engine {
 
-/// Without t, which is the first column.
+/// The number of columns without t, which comes first.
 inline constexpr std::size_t columns_of_body = body_columns.size() - 1, columns_of_link = link_columns.size() - 1;
-/// t; the other columns of each body and of each link, as in "load.theta"; the torque on each body with prescribed
-/// motion; states. The accelerations of the bodies follow without names, unless the run is `joined_elsewhere`.
+/// The names of the columns: t; those of each body and link, such as "load.theta"; the torque on each body with
+/// prescribed motion; states. Unnamed accelerations of the bodies follow, unless the run is `joined_elsewhere`.
 std::vector<std::string> column_names_of(const model::System& system, const model::Drive& drive);
 
 struct Request {
@@ -31,10 +31,10 @@ struct Request {
     const Pair* pair = nullptr;     ///< embedded Runge-Kutta pair used instead of collocation; null means none
     bool keeps_torques = false;     ///< whether the dense motion includes torques, for its energy
     std::size_t history_bytes = limits.memory / 4;
-    std::size_t hidden = 0;         ///< number of rigid joints behind the system's own, which impose prescribed motions
+    std::size_t hidden = 0;         ///< number of rigid joints that impose prescribed motions, after the system's own
     bool joined_elsewhere = false;  ///< whether the caller joins continued runs and decides about rest
 
-    /// The same of another system and its drive, which must outlast it.
+    /// The same request for another system and its drive, which must outlive it.
     [[nodiscard]] Request on(const model::System& other, const model::Drive& its) const {
         return {.system = other,
                 .drive = its,
@@ -54,7 +54,7 @@ struct Request {
     }
 };
 
-/// Runs without checking that functions are functions of their arguments.
+/// Runs without testing whether user functions depend on their arguments only.
 Run run_plain(const Request& problem);
 
 /// Runs and repeats some evaluations of user functions to detect memory (see witness.hpp).

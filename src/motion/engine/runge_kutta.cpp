@@ -8,14 +8,14 @@
 
 namespace dinal::motion::engine {
 
-/// One step for the groups and states. In between, angles of rk4 are a polynomial that has the angles, velocities and
-/// accelerations of both ends, and all else one that has values and rates, and of a pair its bulge.
+/// Makes one step of the groups and states. Dense output: for rk4 the quintic through angles, velocities and
+/// accelerations at both ends, and cubics through values and rates for states; for a pair also its bulge.
 Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& departing) {
     constexpr std::size_t middle = node_count / 2, last = node_count - 1;
     const double h = 2 * s.h;
     const std::size_t groups = frame.groups(), size = 2 * groups + m_;
     unknown_.resize(groups + m_), found_.resize(groups + m_);
-    std::vector<double> speeds(groups, 0);  // of the groups, at the start
+    std::vector<double> speeds(groups, 0);  // velocities of the groups at the start
     for (std::size_t i = 0; i < n_; ++i) {
         const double v = s.y[n_ + i][0] - offsets_.velocities[i][0],
                      momentum = mechanics_.system().bodies[i].inertia * v;
@@ -25,7 +25,7 @@ Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame,
         const Frame::Shape& shape = frame.bodies[i];
         if (shape.size() == 1) speeds[shape[0].group] = (s.y[n_ + i][0] - offsets_.velocities[i][0]) / shape[0].by;
     }
-    /// Puts changes at a node: the ways of the groups, the changes of their velocities, and those of the states.
+    /// Stores changes at a node: displacements and velocity changes of the groups, and changes of the states.
     const auto put = [&](std::size_t node, const std::vector<double>& change) {
         for (std::size_t i = 0; i < n_; ++i) {
             const Frame::Shape& shape = frame.bodies[i];
@@ -63,7 +63,7 @@ Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame,
         for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
         if (!rates(last, z, e)) return Attempt::failed;
     }
-    // In a small part of a step the places differ by rounding, of which no velocity can be made.
+    // In a tiny part of a step angles differ by rounding only, too little for velocities.
     const bool quintic = h >= 1e-3 * step_ && pair_ == nullptr;
     const auto cubic = [&](std::size_t k, double x) {
         const double v0 = h * a[k], v1 = h * e[k];
@@ -99,12 +99,13 @@ Flow::Attempt RungeKutta::accept(Segment& s, const Mode& mode, const Frame& fram
     if (pair_ == nullptr) return Attempt::resolved;
     unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_->power));
     growth_ = std::min(growth_, std::pow(error, -1 / pair_->power));
-    if (unresolved_ > 1) fastest_.rates = fastest;  // not those of a step that went far away
+    if (unresolved_ > 1) fastest_.rates = fastest;  // discard those of a step that went astray
     return look_between(s, mode, frame);
 }
 
-/// Stages of the pair that do not lie on nodes borrow the first inner nodes. Functions of the time alone have there the
-/// values of the polynomial through their samples. The stretch is resolved only if that polynomial is.
+/// Computes the stages of the pair. Stages between nodes temporarily use the first inner nodes, with time-only
+/// functions evaluated by the polynomial through their samples. The stretch counts as resolved only if this polynomial
+/// is.
 template <class Rates>
 bool RungeKutta::find_stages(Segment& s, const Rates& rates, std::vector<double>& change) {
     const std::span<const Pair::Stage> stages = pair_->stages;
@@ -118,7 +119,7 @@ bool RungeKutta::find_stages(Segment& s, const Rates& rates, std::vector<double>
     lend(s.times);
     for (auto* all : {&s.loads, &s.belts, &offsets_.velocities, &offsets_.rates, &offsets_.ways}) {
         std::for_each(all->begin(), all->end(), lend);
-        if (!mechanics_.has_belts()) break;  // which move nothing
+        if (!mechanics_.has_belts()) break;  // without belts the rest is zero
     }
     const auto sum_of_stages = [&](const Pair::Weights& weights, std::vector<double>& sum) {
         sum.assign(change.size(), 0);
@@ -138,11 +139,12 @@ bool RungeKutta::find_stages(Segment& s, const Rates& rates, std::vector<double>
     return good;
 }
 
-/// Returns the estimated error of the last step of the pair, in units of what is allowed. A step that is much too long
-/// may go far away, where torques are huge: it is compared with those at its start. Noise of what acts is in the
-/// estimate, and a shorter step would not take it out.
+/// Returns the estimated error of the pair's last step relative to the allowed one. A step that is far too long may
+/// reach huge torques, so it is compared with the torques at its start. The error includes noise, which a shorter step
+/// would not reduce.
 double RungeKutta::error_of_step(const Segment& s, const Frame& frame) const {
-    constexpr double of_longest = 4;  // an error of an angle counts like one of a velocity over a radian of the motion
+    // fraction of the longest stretch: weighs the error of an angle against that of a velocity
+    constexpr double of_longest = 4;
     const std::size_t groups = frame.groups();
     double most = 0;
     const auto note = [&](double error, std::size_t k, double acts) {

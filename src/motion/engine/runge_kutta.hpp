@@ -9,7 +9,7 @@ namespace dinal::motion::engine {
 
 class RungeKutta final : public Flow {
 public:
-    /// The classical method with this step, or a step of the pair if it is not null.
+    /// Uses the classical method with this step, or the pair if it is not null.
     RungeKutta(const Mechanics& mechanics, double tolerance, double longest, double step, const Pair* pair)
         : Flow(mechanics, tolerance, longest), step_(step), pair_(pair) {}
     [[nodiscard]] double gap(const Segment& segment) const override {
@@ -27,7 +27,7 @@ private:
 
     double step_;
     const Pair* pair_;
-    /// The last step of the pair.
+    /// The last step of a pair.
     struct {
         std::vector<std::vector<double>> stages{};  ///< slopes of the groups and states
         std::vector<double> error{}, bulge{};

@@ -11,7 +11,7 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<dou
     constexpr std::uint64_t all = ~std::uint64_t{0};
     function_->decide(piece_, time(own), asking_->state(own.y), asking_->states(own.y), all);
     function_->decide(made->beyond, time(beyond), asking_->state(beyond.y), asking_->states(beyond.y), all);
-    // Later conditions may follow from the first that differs.
+    // Conditions after the first that differs may depend on it.
     const auto& conditions = piece_.conditions;
     while (made->condition < conditions.size()) {
         const std::size_t step = conditions[made->condition].step;
@@ -27,7 +27,8 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<dou
 }
 
 void Piecewise::watch_others(const Moment& one_side, const Moment& other_side, double near) {
-    constexpr double across = 0.1;  // the surface changes by more from side to side than it is away in the middle
+    // the margin must change across the surface by more than this multiple of its value in the middle
+    constexpr double across = 0.1;
     std::vector<double> margins, others;
     for (const auto side : {Slide::Side::own, Slide::Side::beyond}) {
         const model::terms::Piece& piece = side == Slide::Side::own ? piece_ : slide_->beyond;
@@ -126,7 +127,7 @@ double Signal::value_of(std::size_t i, const Moment& at) const {
     if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
     if (part.sampled != nullptr) return memory_[i].output;
     if (part.delayed != nullptr) {
-        // A jump returns at a rounded time: on its sides evaluate the past beside it.
+        // A delayed jump returns at a rounded time, so the past is evaluated slightly before or after it.
         const double t = towards(at.t, at.side);
         return asking_->ask_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
     }

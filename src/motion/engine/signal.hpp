@@ -30,7 +30,7 @@ struct Moment {
     double t;
     Side side;
     std::span<const double> y;
-    bool freely = false;  ///< whether functions that do not slide are evaluated here, not on the pieces of the stretch
+    bool freely = false;  ///< whether functions that do not slide are evaluated directly, not on their pieces
 };
 
 /// The calling convention of user functions.
@@ -78,23 +78,23 @@ public:
         law_->way = way;
     }
 
-    /// A motion along a condition: the value is a mixture of those on both sides of it.
+    /// A slide along a condition: the value is a mixture of those on both sides.
     struct Slide {
         enum class Side { both, own, beyond };
-        std::function<double(const Moment&)> share{};  ///< of the value beyond
+        std::function<double(const Moment&)> share{};  ///< fraction of the value from beyond
         Side asked = Side::both;
         model::terms::Piece beyond{};
-        std::size_t condition = 0;  ///< of the function's own piece
-        /// Two of the share, which stays between 0 and 1, and then those of either piece that do not change here.
+        std::size_t condition = 0;  ///< index in the function's own piece
+        /// First the two limits 0 and 1 of the fraction, then the other conditions of both pieces.
         std::vector<model::terms::Piece::Condition> conditions{};
         std::vector<std::pair<Side, std::size_t>> others{};
-        std::array<model::terms::Piece, 2> apart{};  ///< both pieces with these conditions only
+        std::array<model::terms::Piece, 2> apart{};  ///< both pieces with these other conditions only
     };
 
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
-    /// The next time at which its formula changes.
+    /// The next time at which the formula changes.
     [[nodiscard]] double next_break(double t) const {
         return law_ && law_->alone ? model::never : function_->next_break(t);
     }
@@ -137,8 +137,8 @@ public:
             function_->value_on(piece_, t, state, states, &out);
         });
     }
-    /// Returns whether a condition that is a comparison, or a sign, certainly does not change where the motion is
-    /// within these ranges.
+    /// Returns whether a comparison or sign condition certainly keeps its decision while the motion is within these
+    /// ranges.
     [[nodiscard]] bool keeps(std::size_t condition, const Ranges& ranges, bool named) const;
     [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
@@ -150,17 +150,18 @@ public:
     /// The piece beyond the condition that it slides along, or nullptr.
     [[nodiscard]] const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
 
-    /// Slides along the condition that changes between two places, one on either side of it. Returns false if there is
-    /// none.
+    /// Starts to slide along the condition that differs between two moments on either side of it. Returns false if none
+    /// differs.
     bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share);
-    /// Watches the other conditions, too. One is the same if it is nearer to zero than this and changes from one side
-    /// of the surface to the other.
+    /// Also watches the other conditions. A condition counts as the same surface if its margin is below `near` and
+    /// changes from one side to the other.
     void watch_others(const Moment& one_side, const Moment& other_side, double near);
     [[nodiscard]] bool slides() const { return slide_ != nullptr; }
     [[nodiscard]] Slide& sliding() { return *slide_; }
-    /// Ends the slide at one of its conditions.
+    /// Ends the slide at the crossed condition: 0 or 1 for a limit of the fraction, otherwise a condition of both
+    /// sides.
     void leave(std::size_t condition);
-    /// The margin of the condition that it slides along, and its rate along a motion with these rates of y.
+    /// The margin of the condition along which it slides, and the rate of this margin for the given rates of y.
     [[nodiscard]] std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
 
 private:
@@ -250,8 +251,8 @@ public:
                 f(*read, part.piecewise->beyond(), part.function->delay, c.gain);
         }
     }
-    /// Visits its formulas of the past motion that act at this time, with their gain, and a function that returns the
-    /// motion that they are given at a time.
+    /// Visits its formulas of the past motion that act at this time, with the gain and a function that returns the past
+    /// motion for a time.
     template <class F>
     void for_each_delayed(double t, F f) const {
         for (const Part& part : parts_) {
@@ -280,7 +281,7 @@ public:
         }
     }
 
-    /// Calls its functions that are not read, whatever they give.
+    /// Calls its functions that are not known as formulas, and ignores the results.
     void call_unread(const Moment& at) const;
 
     // Controllers.
@@ -302,10 +303,10 @@ public:
     /// A relay's watched value is sign * (input - level), positive until it must switch.
     struct Switching {
         double sign, level;
-        std::optional<std::size_t> place;  ///< of the input in y; none: a function
+        std::optional<std::size_t> place;  ///< index of the input in y; none: a function
     };
     [[nodiscard]] Switching switching(std::size_t relay) const;
-    /// Positive until the relay must switch.
+    /// The watched value of the relay: positive until it must switch.
     [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
 
@@ -344,9 +345,10 @@ private:
     std::vector<std::size_t> relays_, held_;
     std::vector<double> delays_;
     bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
-    bool is_held_ = true;  ///< all that does not depend on the motion are controllers that hold a value for ever
+    /// whether everything that does not depend on the motion is a controller that holds its value for ever
+    bool is_held_ = true;
     mutable model::Spread spread_{.places = cheb::nodes};
-    /// Caches of_time() at both ends of the last stretch, one of which is the beginning of the next.
+    /// Values of of_time() at both ends of the last stretch, one of which begins the next one.
     static constexpr double nowhen = std::numeric_limits<double>::quiet_NaN();
     struct Known {
         double t = nowhen, rest = 0, M = 0;

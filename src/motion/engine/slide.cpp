@@ -11,8 +11,9 @@ using Which = Piecewise::Slide::Side;
 
 namespace {
 
-constexpr double near = 1e-9;            // part of a time unit: so far from the surface both sides are asked
-constexpr double clearly_apart = 1e-12;  // of the difference between both sides
+// distance from the surface at which both sides are evaluated, in time units of the motion
+constexpr double near = 1e-9;
+constexpr double clearly_apart = 1e-12;  // relative to the difference between both sides
 
 bool sticks(std::size_t joint, const Now& now) {
     return now.rubs(joint) && now.mode.friction[joint].way == model::Motion::stuck && !now.mode.keeps_place(joint);
@@ -36,7 +37,7 @@ std::vector<double> Slides::Sides::mixed() const {
     return rates;
 }
 
-/// How the motion leaves the surface while the load is that of one side.
+/// Returns margin and rates of the motion with the load of one side of the surface.
 Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     const Which before = std::exchange(function.sliding().asked, which);
@@ -62,11 +63,11 @@ Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) cons
     return side;
 }
 
-/// What rounding has moved off the surface comes back.
+/// The share of the load from beyond. A small feedback returns the motion to the surface, from which rounding moves it.
 double Slides::share(Piecewise& function, const Moment& at) const {
     const double back = 4 / unit_;
     const Side own = on(function, Which::own, at), beyond = on(function, Which::beyond, at);
-    // Where contacts hold the velocities of the surface, the motion leaves it to one side.
+    // If contacts hold the velocities of the surface, the loads do not move the motion off it: one side is used.
     if (!Sides{own, beyond}.differ()) return own.rate < 0 ? 1 : 0;
     return (own.rate + back * own.margin) / (own.rate - beyond.rate);
 }
@@ -82,7 +83,8 @@ std::optional<Slides::Sliding> Slides::owner_of(Piecewise& function, double t) c
     return owner;
 }
 
-/// Moves velocities and states the way in which both sides differ.
+/// Moves velocities and states onto the surface, along the difference of both sides' rates; `work` receives the load's
+/// work.
 void Slides::put_on_surface(const Sides& sides, Now& now, double& work) const {
     const std::size_t n = mechanics_.bodies();
     const auto& [own, beyond] = sides;
@@ -94,8 +96,8 @@ void Slides::put_on_surface(const Sides& sides, Now& now, double& work) const {
     }
 }
 
-/// Where the rates are known, both places are a little later: a condition that is 0 here, as one that was just crossed,
-/// is what it becomes.
+/// If rates are given, evaluates both sides slightly later on the motion, so that a condition that was just crossed has
+/// its new decision.
 std::optional<Slides::Sides> Slides::decide(const Sliding& of, const Now& now, const std::vector<double>& rates) {
     const double later = rates.empty() ? 0 : 10 * near;
     const std::size_t n = mechanics_.bodies();
@@ -128,7 +130,8 @@ bool Slides::stands(Piecewise& function, const Now& now) const {
     return owner && owner->joint && sticks(*owner->joint, now);
 }
 
-/// A contact that holds the velocities of the surface is about to slip along it, in one direction.
+/// Finds the sides of a slide. If a sticking contact holds the velocities of the surface, it must be about to slip
+/// along it in one direction.
 std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, const std::vector<double>& rates) {
     mode_ = now.mode;
     const bool holds = of.joint && sticks(*of.joint, now);
@@ -150,7 +153,7 @@ std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, con
 
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now,
                                            const std::vector<double>& rates) {
-    constexpr std::size_t most = 2;  // each asks the others
+    constexpr std::size_t most = 2;  // evaluating one slide evaluates the others
     if (mechanics_.has_belts() || sliding_.size() >= most) return {};
     auto owner = owner_of(function, now.t.hi);
     if (!owner) return {};
@@ -188,7 +191,7 @@ bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, std::ve
     const Sliding was = *found;
     const Sides before{on(function, Which::own, now.here()), on(function, Which::beyond, now.here())};
     sliding_.erase(found);
-    if (condition > 1 && before.differ()) {  // the function has another piece on either side, on which it may go on
+    if (condition > 1 && before.differ()) {  // both sides may have a new piece on which the slide continues
         const std::vector<double> rates = before.mixed();
         if (begin(function, was.jump, now, rates)) return true;
         const auto sides = decide(was, now, rates);

@@ -8,7 +8,7 @@ void TorqueSizes::find(const Mechanics& mechanics, const Segment& last, const Mo
     of_bodies_.assign(mechanics.bodies(), 0);
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
         double load = last.loads.empty() ? 0 : greatest(last.loads[j]);
-        // A load that depends on the motion may be 0 here, and not a little later.
+        // A load that depends on the motion may be 0 now but not slightly later.
         if (!last.loads.empty() && mechanics.loads()[j].asks_the_motion()) {
             load = std::max(load, greatest(last.driven[j]));
         }

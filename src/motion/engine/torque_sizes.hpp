@@ -1,4 +1,4 @@
-// The size of the torques in a run: their rounding is a part of it.
+// The magnitude of the torques in a run, as the scale of their rounding.
 #pragma once
 
 #include <cmath>
@@ -8,11 +8,11 @@
 
 namespace dinal::motion::engine {
 
-/// The size of the torques on each body at a moment, with the loads of the last stretch.
+/// The magnitude of the torques on each body, including the loads of the last stretch.
 class TorqueSizes {
 public:
     void find(const Mechanics& mechanics, const Segment& last, const Moment& at);
-    /// Returns the size of the torques at the bodies of a joint, as torques on its angle.
+    /// Returns the magnitude of the torques on a joint's bodies, as torques on its angle.
     [[nodiscard]] double on(const model::Joint& joint) const {
         double size = 0;
         for (const auto& [body, by] : joint.of) size += of_bodies_[body] / std::fabs(by);

@@ -25,7 +25,7 @@ constexpr double decay_of_error(std::size_t n) {
     return 4 / (power(rho, n) * (rho - 1));
 }
 
-/// The maximum of |Tk(z) - Tk(0)| in that disc, at z = 3 i.
+/// The maximum of |Tk(z) - Tk(0)| in that disc, reached at z = 3 i.
 constexpr Series growth = [] {
     Series most{};
     for (std::size_t k = 1; k < node_count; ++k) {
@@ -35,7 +35,7 @@ constexpr Series growth = [] {
     return most;
 }();
 
-/// A bound of how far a polynomial deviates in the disc from its value in the middle. Trailing terms that may be
+/// A bound of the deviation of a polynomial in the disc from its value in the middle. Trailing terms that may be
 /// rounding are dropped, as they would grow.
 double deviation_in_disc(const Series& series) {
     const double noise = 4 * rounding * cheb::size(series);
@@ -51,7 +51,7 @@ Interval range(const Series& series) {
     return {series[0] - way, series[0] + way};
 }
 
-/// The series on a part of the stretch; exactly the same for all of it.
+/// The series on a part of the stretch; for the whole stretch the same series.
 Series on_part(const Series& series, double middle, double half) {
     if (half == 1) return series;
     Nodes values;
@@ -63,7 +63,8 @@ Series on_part(const Series& series, double middle, double half) {
 
 bool Unseen::is_told(double allowed, double part) {
     constexpr double close = 1e-9;
-    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();  // others change at breaks only
+    // conditions that do not depend on the motion change at breaks only
+    const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();
     walk_.begin(*formula_, piece_, ranges);
     for (const Input& input : inputs_) {
         walk_.set(input.place, {cheb::value(input.series, 0), deviation_in_disc(input.series)},
@@ -74,7 +75,7 @@ bool Unseen::is_told(double allowed, double part) {
            enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
-/// Discs grow by the roundings of each step.
+/// Returns the rounding error, since discs without radius grow only by the roundings of each step.
 double Unseen::rounded() {
     walk_.begin(*formula_, piece_, false);
     for (const Input& input : inputs_) walk_.set(input.place, {cheb::value(input.series, 0), 0}, Interval{});
@@ -155,7 +156,7 @@ namespace {
 
 constexpr double clearly = 64, of_last_iteration = 1e-9;
 
-/// The proofs for one stretch.
+/// The proofs for one stretch, or a part of it.
 class StretchProof {
 public:
     StretchProof(const Mechanics& mechanics, Unseen& unseen, Segment& s, const Mode& mode, const Proofs::Beside& beside,
@@ -175,7 +176,7 @@ public:
     void rates();
     void events();
     void contact(std::size_t joint, const Moment& middle);
-    /// Returns false as soon as a function was found to do something else.
+    /// Returns false once a function is found to deviate.
     [[nodiscard]] bool good() const { return !place_; }
     [[nodiscard]] double place() const { return middle_ + half_ * *place_; }
 
@@ -193,12 +194,12 @@ private:
     void look_at(const Signal& signal, double size, double noise);
     void look_at_past(const Signal& signal, double size, double noise);
     [[nodiscard]] bool found(const Unseen::Found& what);
-    /// The size of what acts on a body: the torques, and what the body has in its motion.
+    /// The scale for errors of torques on a body: the torques, and its momentum per half stretch.
     [[nodiscard]] double size_on(std::size_t body) const {
         return beside_.torques[body] + inertia(body) * greatest(s_.y[n_ + body]) / s_.h;
     }
     [[nodiscard]] double inertia(std::size_t body) const { return mechanics_.system().bodies[body].inertia; }
-    /// When a motion has died out, only the rounding of what has acted is left.
+    /// The roughness to tolerate. In a decayed motion the rounding of earlier torques remains.
     [[nodiscard]] double rough(std::size_t k) const {
         return std::max(beside_.floor.noise[k], rounding * beside_.floor.greatest[k]);
     }
@@ -210,22 +211,22 @@ private:
     const Proofs::Beside& beside_;
     std::size_t n_;
     int budget_;
-    double middle_, half_;  ///< of the part of the stretch that is looked at
+    double middle_, half_;  ///< middle and half length of the part under test
     double late_;
     std::optional<double> place_;
 };
 
-/// A stretch between breaks does not reach them.
+/// The series of the time minus a delay. A stretch next to a break is shortened so as not to touch it.
 Series StretchProof::time(double delay) const {
-    constexpr double hair = 16;
+    constexpr double roundings_inside = 16;
     Series t{};
     t[0] = s_.start.hi + s_.h * (1 + middle_) - delay, t[1] = s_.h * half_;
-    if (s_.from_break || s_.to_break) t[1] -= hair * rounding * late_;
+    if (s_.from_break || s_.to_break) t[1] -= roundings_inside * rounding * late_;
     return t;
 }
 
-/// Gives a formula the motion, or that of the past, and, before all states, a speed. Returns false if it wants other
-/// states.
+/// Gives a formula the present or past motion and, before the states, a speed. Returns false if the formula expects
+/// other states.
 bool StretchProof::give_motion(const model::Formula& formula, const Series* speed, const std::vector<Series>* past) {
     const auto of = [&](std::size_t k) { return past != nullptr ? (*past)[k] : whole(k); };
     const bool named = mechanics_.system().named;
@@ -242,7 +243,7 @@ bool StretchProof::give_motion(const model::Formula& formula, const Series* spee
     return true;
 }
 
-/// Begins with a function, if it is read. `first` is its first argument.
+/// Prepares the test of a function known as a formula. `first` is its first argument.
 bool StretchProof::begin(const Mechanics::Asked& asked, const Series& first, const Series* speed) {
     model::Formula* formula = good() && asked.function != nullptr ? asked.function->read() : nullptr;
     if (formula == nullptr) return false;
@@ -257,10 +258,11 @@ bool StretchProof::found(const Unseen::Found& what) {
     return what.place.has_value();
 }
 
-/// `size` is the size of what the function acts beside, `allowed` how much of that, or `part` of itself, is allowed.
+/// Tests the prepared formula. The error may be `allowed` or the fraction `part` of the value; `size` scales the
+/// rounding of time.
 void StretchProof::look(double size, double allowed, double part) {
     if (unseen_.is_told(allowed, part)) return;
-    // When the motion has died out, the numbers that the function calculates with have not.
+    // In a decayed motion the function's own constants still round.
     constexpr double few_roundings = 16;
     const double rounded = few_roundings * unseen_.rounded();
     if (std::isfinite(rounded)) allowed += rounded;
@@ -292,7 +294,7 @@ void StretchProof::look_at(const Signal& signal, double size, double noise) {
         });
 }
 
-/// The same for functions of the past motion, which is smooth on a stretch as what broke it is repeated as a break.
+/// Tests functions of the past motion. It is smooth on a stretch, because its breaks are repeated as breaks.
 void StretchProof::look_at_past(const Signal& signal, double size, double noise) {
     signal.for_each_delayed(s_.time(0), [&](model::Formula& formula, double gain, const auto& past_at) {
         if (!good()) return;
@@ -349,7 +351,7 @@ void StretchProof::events() {
     }
 }
 
-/// The belt, the friction and the spring of a joint.
+/// Tests the belt, friction and spring of a joint.
 void StretchProof::contact(std::size_t j, const Moment& middle) {
     const model::Joint& joint = mechanics_.system().joints[j];
     const std::size_t body = joint.first();
@@ -380,10 +382,11 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
 }  // namespace
 
 bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside, double until) {
-    constexpr int thorough = 64, tired = 4;
+    constexpr int search_budget = 64, many_failures = 4;
     const double late = std::max(std::fabs(s.start.hi), std::fabs(s.end));
     if (!any_ || s.h <= 64 * rounding * late) return true;
-    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < tired ? thorough : 1, until);
+    StretchProof proof(mechanics_, unseen_, s, mode, beside, failed_in_a_row_ < many_failures ? search_budget : 1,
+                       until);
     proof.loads();
     proof.rates();
     proof.events();

@@ -1,4 +1,4 @@
-// Decides whether a formula may deviate, between the nodes of a stretch, from its series there.
+// Decides whether a formula can deviate between the nodes of a stretch from its series.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace dinal::motion::engine {
 
-/// A search on one stretch. If the discs around the stretch are finite, the formula is analytic there, and the radius
-/// bounds the error of its series; otherwise the stretch is divided and each part compared.
+/// A test on one stretch. If the complex discs around the stretch have bounded images, the formula is analytic there,
+/// and their radius bounds the error of its series. Otherwise the stretch is divided and each part is tested.
 class Unseen {
 public:
     /// Starts with a formula, evaluated on `piece` if given.
@@ -23,16 +23,16 @@ public:
     /// Sets an argument of the function.
     void give(std::size_t place, const Series& series) { inputs_.push_back({place, series}); }
 
-    /// Returns whether it certainly deviates from its series by at most `allowed`, or by this part of its value, and
-    /// the deciders of its piece's conditions by little as well.
+    /// Returns whether the formula certainly deviates from its series by at most `allowed` or the fraction `part` of
+    /// its value, and the operands of its piece's conditions by little as well.
     [[nodiscard]] bool is_told(double allowed, double part);
 
     struct Found {
         std::optional<double> place = {};  ///< a point with a larger deviation than allowed
-        bool proven = false;               ///< whether there is none
+        bool proven = false;               ///< whether no such point exists
     };
-    /// The same by division into at most `budget` parts. `allowed` returns the tolerance for a series. With
-    /// `condition`, checks the quantity that decides this condition.
+    /// The same test by division into at most `budget` parts. `allowed` returns the tolerance for a series. With
+    /// `condition`, tests the quantity that decides this condition.
     template <class Allowed>
     [[nodiscard]] Found search(std::optional<std::size_t> condition, int budget, const Allowed& allowed) {
         condition_ = condition;
@@ -40,8 +40,7 @@ public:
         return search(allowed(series_), budget);
     }
     [[nodiscard]] const model::terms::Piece* piece() const { return piece_; }
-    /// What the function may be off in the middle of the stretch by the rounding of its steps; not finite if that is
-    /// not known.
+    /// The error of the function in the middle of the stretch due to rounding in its steps; not finite if unknown.
     [[nodiscard]] double rounded();
 
 private:
@@ -67,34 +66,34 @@ private:
     model::bounds::Walk walk_ = {};
 };
 
-/// Proves for stretch after stretch that functions that are read do nothing between its nodes that their series do not.
-/// It changes nothing of the motion.
+/// Proves for each stretch that functions known as formulas do nothing between its nodes that their series do not show.
+/// Does not change the motion.
 class Proofs {
 public:
-    /// The sizes beside which functions act.
+    /// Scales relative to which errors of functions are allowed.
     struct Beside {
         double tolerance;
-        const std::vector<double>& torques;  ///< on each body
+        const std::vector<double>& torques;  ///< magnitude on each body
         const Floor& floor;
-        const std::vector<double>&fastest_belt, &fastest_rate;  ///< of each joint, and of each state, so far
+        const std::vector<double>&fastest_belt, &fastest_rate;  ///< greatest so far, for each joint and each state
     };
     explicit Proofs(const Mechanics& mechanics) : mechanics_(mechanics), any_(mechanics.has_functions()) {}
 
-    /// Returns false if one does something else, at seen(), before the place `until`. The stretch is marked if that
-    /// could not be proven.
+    /// Returns false if a function deviates before the point `until`; seen() is then its time. Sets Segment::proven to
+    /// false if nothing could be proven.
     bool hides_nothing(Segment& segment, const Mode& mode, const Beside& beside, double until = 1);
-    /// Returns the rounding of functions that are read, at the beginning of the stretch: of the torques on each body
-    /// and of the rate of each state.
+    /// Returns the rounding of formulas at the start of the stretch: of the torques on each body and of the rate of
+    /// each state.
     std::vector<double> roundings(const Segment& segment, const Mode& mode);
-    /// The time at which a load did what its series does not: it is looked at until it is behind.
+    /// The time at which a load deviated from its series; loads are sampled until it has passed.
     [[nodiscard]] double seen() const { return seen_; }
     void see(double t) { seen_ = t; }
-    /// Returns whether nothing could be proven for the last stretch.
+    /// Returns whether the proofs failed for the last stretch.
     [[nodiscard]] bool failed_last() const { return failed_in_a_row_ > 0; }
 
 private:
     const Mechanics& mechanics_;
-    bool any_;  ///< function
+    bool any_;  ///< whether there is any user function
     Unseen unseen_;
     double seen_ = -model::never;
     int failed_in_a_row_ = 0;

@@ -8,7 +8,8 @@ namespace dinal::motion::engine {
 UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
     constexpr std::size_t most_passages = 200;
     const double before = ending.before();
-    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;  // passages; the others only change the half
+    // zeros that count as events, and zeros in the other direction, which only change the half
+    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;
     for (std::size_t e = 0; e < watches_.size(); ++e) {
         const model::Crossing direction = wanted_[e].direction;
         Watch& watch = watches_[e];
@@ -74,7 +75,7 @@ void UserEvents::pass(const std::vector<std::size_t>& events) {
     for (const std::size_t event : events) watches_[event].half = -watches_[event].half;
 }
 
-/// Returns how far a watched value goes when what it is made of changes by some ulps.
+/// Returns the change of a watched value when its arguments change by a few ulps.
 double UserEvents::rounding_of(std::size_t event, const Now& now) const {
     constexpr double ulps = 1 + 4 * rounding;
     std::vector<double> y = now.y;
@@ -88,8 +89,8 @@ double UserEvents::rounding_of(std::size_t event, const Now& now) const {
     return most;
 }
 
-/// Returns whether a value at zero goes on to the side to which it has come, now that the user has acted, as it does at
-/// once; otherwise the act threw it back, or stopped it.
+/// Returns whether a value at zero continues to its new side after the user's action; otherwise the action reversed or
+/// stopped it.
 bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& last, double h, Balances& balances,
                            const Frame& frame) {
     constexpr double soon = 1e-4;
@@ -113,7 +114,7 @@ bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& las
 void UserEvents::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told,
                                  const Now& now, const Segment& last, double h, Balances& balances,
                                  const Frame& frame) {
-    constexpr double at_zero = 1e-12;  // this part of what it was on the stretch stands at zero
+    constexpr double at_zero = 1e-12;  // smaller values relative to the stretch count as zero
     std::vector<double> begin, end;
     last.state(-1, begin), last.state(1, end);
     for (std::size_t e = 0; e < watches_.size(); ++e) {
@@ -122,7 +123,7 @@ void UserEvents::stand_where_put(const std::vector<double>& before, const std::v
         const double size = std::max({std::fabs(value(e, {last.time(-1), Side::at, begin})),
                                       std::fabs(value(e, {last.end, Side::at, end})), std::fabs(own)});
         if (own == before[e]) {
-            // One that an impact took past zero does not stand there.
+            // An event taken past zero by an impact is not at zero.
             const bool stands = std::fabs(own) <= at_zero * size + 2 * rounding_of(e, now) + watch.rounded;
             if (!stands || std::find(told.begin(), told.end(), e) == told.end()) continue;
             watch.rounded = 2 * std::fabs(own) + rounding_of(e, now);

@@ -1,4 +1,4 @@
-// The events of the user: functions of the motion that are watched for zeros.
+// The user's events: functions of the motion whose zeros are located.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace dinal::motion::engine {
 
-/// Watches them, and knows on which side of zero each is. It does not act.
+/// Watches the zeros of user events and keeps the side of each. Actions are executed elsewhere.
 class UserEvents {
 public:
     UserEvents(const Mechanics& mechanics, const std::vector<model::WantedEvent>& wanted)
@@ -22,25 +22,27 @@ public:
     void go_on_with(const std::vector<Watch>& watches) { watches_ = watches; }
 
     struct Seen {
-        bool good = true;  ///< all values are finite
-        /// An event that an act threw back, or stopped, and that is through zero without having been beyond rounding
-        /// on the side that it came from: it would be thrown back again at once, and again.
+        bool good = true;  ///< whether all values are finite
+        /// An event whose action reversed or stopped the value, and that crosses zero again without having clearly left
+        /// it: the action would fire endlessly.
         std::optional<std::size_t> again = {};
     };
-    /// Ends the stretch at the first of them, if that is before its end.
+    /// Ends the stretch at the first event, if it precedes the present end.
     [[nodiscard]] Seen watch(const Segment& segment, Ending& ending);
-    /// Returns whether each is read, and certainly stays on its side of zero where the motion is within these ranges.
+    /// Returns whether all functions are formulas that certainly keep their sign while the motion is within these
+    /// ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges);
 
     [[nodiscard]] std::vector<double> values(const Moment& at) const;
-    /// These are about to act.
+    /// Prepares for the actions of these events.
     void pass(const std::vector<std::size_t>& events);
-    /// An act may have put watched values on the other side of zero, which is no passing. A value of an event that was
-    /// reported stands at zero still if something else has changed, as in a bounce: its half is the one that it came
-    /// from, or, when it goes on, what it comes to next. `before`: the values before the act; `h`: of the next stretch.
+    /// Sets the side of each value after actions, which may move values across zero without an event. If a reported
+    /// event is still at zero (something else was changed, as in an impact), its side is the one it came from or, if it
+    /// continues, the next one. `before` are the values before the actions, `h` is half the next stretch.
     void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told, const Now& now,
                          const Segment& last, double h, Balances& balances, const Frame& frame);
-    /// Notes an act that has moved the bodies. Returns whether the intervals between them fade to nothing.
+    /// Registers an action that moved the bodies. Returns whether the intervals between its firings shrink towards
+    /// zero.
     [[nodiscard]] bool fades(std::size_t event, double t) { return watches_[event].fading.after(t); }
 
 private:
@@ -52,7 +54,7 @@ private:
     const Mechanics& mechanics_;
     const std::vector<model::WantedEvent>& wanted_;
     std::vector<Watch> watches_;
-    std::vector<Half> came_from_;  ///< before the last ones acted
+    std::vector<Half> came_from_;  ///< sides before the last actions
     std::vector<double> point_;
 };
 

@@ -9,37 +9,38 @@
 
 namespace dinal::motion::engine {
 
-/// The places from which motions near walls are known best. It moves nothing.
+/// Reference points for accurate distances from walls. Does not change the motion.
 struct Walls {
     explicit Walls(const model::System& system);
 
     bool any = false;
-    std::vector<double> origin, reach;  ///< of each joint: the wall that it hit last, and how far it went from there
-    std::pair<std::size_t, int> last_hit{0, 0};  ///< the joint and its wall
+    /// for each joint: angle of the wall it hit last, and greatest distance from there since
+    std::vector<double> origin, reach;
+    std::pair<std::size_t, int> last_hit{0, 0};  ///< joint and side of the wall
 
     void struck(std::size_t joint, double place) { origin[joint] = place, reach[joint] = 0; }
-    /// The motion has gone on: joints may have got farther from the wall that they hit last.
+    /// Updates the distances from the walls after the motion has advanced.
     void follow(const model::System& system, const Now& now);
-    /// Keeps angles of bodies between their rigid walls.
+    /// Clamps angles of bodies to their rigid walls.
     static void keep_within(const model::System& system, std::vector<double>& y);
 };
 
-/// Impulses along joints: they conserve momentum, and what is linked rigidly takes its part.
+/// Impulses along joints. They conserve momentum, and rigidly linked bodies take part.
 class Impulses {
 public:
-    /// For each body, its velocity if the joint turned no more, and its share of a relative velocity.
+    /// The effect of an impulse: for each body its velocity if the joint stopped, and its share of a relative velocity.
     struct Thrown {
         double lightness = 0;
         std::vector<std::pair<double, double>> velocities = {};
     };
     explicit Impulses(const Mechanics& mechanics) : mechanics_(mechanics) {}
     [[nodiscard]] Thrown along(std::size_t joint, const Now& now);
-    /// Gives the joint this relative velocity.
+    /// Gives the joint this relative velocity after the impact.
     static void apply(const Thrown& thrown, double relative, Now& now);
 
 private:
     const Mechanics& mechanics_;
-    std::optional<Frame> rigid_;  ///< what moves where nothing but rigid joints hold
+    std::optional<Frame> rigid_;  ///< frame with only the rigid joints sticking
 };
 
 }  // namespace dinal::motion::engine

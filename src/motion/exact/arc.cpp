@@ -8,9 +8,9 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// Shorter arcs use the Taylor series: radians of the fastest part.
+/// Arcs below this many radians of the fastest part use the Taylor series.
 constexpr double short_of = 0.3;
-/// The largest loss by cancellation, as a factor, that the closed form may have.
+/// The largest factor by which cancellation in the closed form may enlarge rounding.
 constexpr double most_cancelled = 256;
 /// The distance from resonance, as a part of k, below which a sine uses the resonant form.
 constexpr double near_resonance = 1.0 / 64;
@@ -41,11 +41,11 @@ double Arc::begin(const model::ClosedForm& M, const Start& start, double length)
     return length;
 }
 
-/// Uses particular solutions and the remaining free motion. Returns false if they would cancel.
+/// Begins with particular solutions and the remaining free motion. Returns false if these would cancel.
 bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double length) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
     velocity_.clear();
-    double theta = 0, velocity = start.velocity;  // the free motion's
+    double theta = 0, velocity = start.velocity;  // initial values of the free motion
 
     double still = start.pull;
     for (const auto& sine : M.sines()) still -= sine.quadrature;
@@ -102,7 +102,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
     return true;
 }
 
-/// The particular solution of the powers; the constant one is `still`.
+/// Adds the particular solution of the powers; the constant one is `still`.
 bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, double& theta, double& velocity) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness();
     // Powers: from the highest down, k b_n = c_n - C (n + 1) b_(n+1) - I (n + 2) (n + 1) b_(n+2).
@@ -129,7 +129,7 @@ bool Arc::begin_powers(const model::ClosedForm& M, double still, double length, 
     return true;
 }
 
-/// Computes the response to the j-th sine, usually unchanged since the arc before.
+/// Computes the response to the j-th sine, usually unchanged from the previous arc.
 void Arc::answer(std::size_t j, double omega) {
     const double I = system_.inertia(), C = system_.damping(), k = system_.stiffness(), w1 = free_.root().imag();
     const Complex root = free_.root(), i(0, 1), held{std::fma(-I * omega, omega, k), C * omega}, mu(0, omega);
@@ -144,7 +144,7 @@ void Arc::answer(std::size_t j, double omega) {
     to.gain = 1.0 / (2.0 * i * w1 * I);
     to.other_gain = -1.0 / (mu - std::conj(root));
     to.from_root = free_.from_root(omega);
-    // (g exp)' = root g + exp: so f'''' has root^4 of g, and the rest of exp(mu tau).
+    // (g exp)' = root g + exp, so f'''' contains root^4 of g, and the remainder of exp(mu tau).
     to.fourth_growing = std::norm(root * root);
     to.fourth_turning = std::abs((root + mu) * (root * root + mu * mu));
 }

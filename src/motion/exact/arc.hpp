@@ -1,4 +1,4 @@
-// The closed form of the motion on an arc, on which M has one formula and friction one sign.
+// The closed form of the motion on an arc, an interval on which M has one formula and friction one sign.
 #pragma once
 
 #include "model/closed_form.hpp"
@@ -14,15 +14,15 @@ public:
     struct Start {
         double velocity, pull;
     };
-    /// Begins the arc under M from its origin, requested for `length`. Returns the length for which it is valid, which
-    /// is less if cancellation must be avoided.
+    /// Begins an arc of the requested `length` at the origin of M. Returns the length for which the closed form is
+    /// valid, which may be shorter to avoid cancellation.
     double begin(const model::ClosedForm& M, const Start& start, double length);
     /// An upper estimate of the cost of a time unit: radians of the fastest part times the number of oscillating parts.
-    /// Excludes parts of an overdamped system that decay at once.
+    /// Does not count parts of an overdamped system that decay at once.
     [[nodiscard]] double cost(const model::ClosedForm& M) const {
         return lasting_rate(M) * static_cast<double>(1 + M.turning_parts());
     }
-    /// The longest arc: limits the accumulated rounding of looks within an arc and of successive arcs.
+    /// The longest arc, which limits the accumulated rounding of steps within an arc and of successive arcs.
     [[nodiscard]] double longest(const model::ClosedForm& M) const;
 
     struct Point {

@@ -76,7 +76,7 @@ private:
     model::ClosedForm M_;
     mutable Arc arc_;  // work space
     double stretch_ = 0;
-    std::vector<Work> done_;  // up to the beginning of each interval
+    std::vector<Work> done_;  // work up to the start of each interval
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace dinal::motion::exact {
 struct KeptArc {
     Clock start;
     double length = 0;
-    double asked = 0;  ///< requested length of the closed form: another length may select another form
+    double asked = 0;  ///< requested length, which affects the choice of the closed form
     model::State begin;
     double theta_rest = 0;  ///< rounding error of theta at the start
     double pull = 0;        ///< M - k theta minus the braking of friction, at the start

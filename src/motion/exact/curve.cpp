@@ -8,7 +8,7 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// The longest tabulated look, in natural periods; each level halves it.
+/// The longest tabulated step ("look"), in natural periods; each level halves it.
 constexpr double longest_look = 8;
 
 /// 1/n and 1/n!
@@ -123,7 +123,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
     to.bent = free_.w0_squared() * step.moved;
 }
 
-/// Turns the rarer parts: powers, exponentials and resonances.
+/// Advances the rarer parts: powers, exponentials and resonances.
 void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const {
     const Value sum = powers(place);
     y.f += sum.f, y.slope += sum.slope;
@@ -190,7 +190,7 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
     return asked_.jet;
 }
 
-/// The derivatives of the rarer parts, from one order to another.
+/// Computes the derivatives of the rarer parts from order `from` to `to`.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
     const Moment& asked = *asked_.moment;
     Jet more{};
@@ -244,7 +244,7 @@ double WalkedCurve::Asked::further_way() const {
     return further;
 }
 
-/// The bound for the rarer parts.
+/// The part of the bound due to the rarer parts.
 double WalkedCurve::growing_bound(double until) const {
     double bound = 0;
     for (std::size_t j = 0; j < sum_.rates; ++j) {

@@ -1,7 +1,5 @@
-// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time. Advances in looks: steps,
-// each with a bound of the deviation between its ends.
-//
-// It represents the velocity on an arc, or the load on a mass at rest.
+// A sum of powers, sines, exponentials, a free motion and resonances as a curve over time. A walk advances along it in
+// steps called looks, each with a bound of the deviation between its ends.
 #pragma once
 
 #include <array>
@@ -24,7 +22,7 @@ public:
     struct Value {
         double f = 0, slope = 0;
     };
-    /// The value and two derivatives at the end of a stretch.
+    /// The value and two derivatives at the end of an interval.
     struct End {
         double f = 0, slope = 0, bend = 0;
     };
@@ -32,10 +30,10 @@ public:
     static constexpr std::size_t jet_order = 6;
     using Jet = std::array<double, jet_order + 1>;
 
-    // Terms are added again for each arc; usually the frequencies and rates are those of the arc before.
+    // Terms are added again for each arc; usually the frequencies and rates are those of the previous arc.
     void clear() { sum_.clear(); }
     void add_power(double c) { sum_.powers.push_back(c); }
-    /// For a velocity: powers of the way, the integrals of its own powers plus a constant.
+    /// For a velocity: adds a power of its integral ("way").
     void add_way_power(double c) { sum_.way_powers.push_back(c); }
     /// Im(turning exp(i omega tau))
     void add_sine(double omega, Complex turning) {
@@ -51,18 +49,18 @@ public:
     void add_resonance(const Resonance& resonance) { sum_.resonances.push_back(resonance); }
     /// The velocity of a free motion from this state.
     void add_free(double theta, double velocity) { start_.free = free_.parts(theta, velocity), sum_.has_free = true; }
-    /// Ends the definition; the walk begins at 0.
+    /// Completes the definition and begins the walk at 0.
     void begin();
 
-    /// The value at tau, to rounding; does not move the walk.
+    /// The value at tau, accurate to rounding. Does not move the walk.
     Value at(double tau) {
         asked_.set(other_, tau);
         return turn(start_, turn_by(tau), other_, tau);
     }
-    /// The same with three derivatives; derive() adds the others.
+    /// The value at tau with three derivatives; further_jet() adds the others.
     const Jet& jet(double tau) { return derive(at(tau)); }
     const Jet& further_jet();
-    /// The same by a look ahead of this length, including its rounding.
+    /// The same at the end of a look of this length, including its rounding.
     const Jet& jet_ahead(double length) {
         next_place_ = place_ + length;
         there_ = turn(*now_, turn_by(length), *next_, next_place_);
@@ -70,9 +68,9 @@ public:
         return derive(there_);
     }
     [[nodiscard]] bool asked_ahead() const { return asked_.moment != &other_; }
-    /// Moves the point of way() this far from the last point of jet().
+    /// Moves the point of way() by this much from the last point of jet().
     void step_aside(double further) { asked_.aside = further; }
-    /// For a velocity: the way from the beginning to the last point of at() or jet().
+    /// For a velocity: its integral from the start to the last point of at() or jet().
     [[nodiscard]] double way() const;
 
     // The walk.
@@ -97,8 +95,8 @@ public:
         place_ = next_place_;
         here_ = there_;
     }
-    /// h^4/384 for the length of a level: times max|f''''|, it bounds the distance from the cubic through both ends of
-    /// a look.
+    /// h^4/384 for a look of this level. Times max|f''''| it bounds the distance from the Hermite cubic through both
+    /// ends.
     [[nodiscard]] double hides(int level) const {
         const double square = length(level) * length(level);
         return square * square * (1.0 / 384);
@@ -115,13 +113,13 @@ public:
         if (sum_.powers.size() > jet_order + 1) return too_fast;
         return fastest_;
     }
-    /// A bound of the sixth derivative, given one of the fourth. Near resonance it has six products of five factors
-    /// each, the fourth four of three.
+    /// A bound of the sixth derivative, given one of the fourth. Near resonance the sixth derivative has six products
+    /// of five factors each, the fourth derivative four of three.
     [[nodiscard]] double sixth_bound(double fourth_bound) const {
         if (sum_.powers.size() > 6) return too_fast;
         return fourth_bound * fastest_ * fastest_ * (sum_.resonances.empty() ? 1 : 2);
     }
-    /// The size of the terms of the sum, from here to `until`.
+    /// The magnitude of the terms of the sum, from here to `until`.
     [[nodiscard]] double size(double until) const;
 
 private:
@@ -149,7 +147,7 @@ private:
     };
     static constexpr std::uint8_t none = 255;
 
-    /// The terms of the sum. Their amounts at the beginning are in `start_`.
+    /// The terms of the sum. Their initial values are in `start_`.
     struct Sum {
         std::vector<double> powers{}, way_powers{}, omega{}, rate{};
         std::vector<Resonance> resonances{};
@@ -174,14 +172,14 @@ private:
             ++count;
         }
     };
-    /// Turns by level, made on demand, and for the latest other lengths, as motions repeat their steps.
+    /// Cached factors of time steps, for each level and the latest other lengths, as motions repeat their steps.
     struct Table {
         double longest;             // length of the first level
         bool has_free = false;      // whether the turns include free motions
         std::vector<Complex> mu{};  // exponents of the resonances
         std::array<std::uint8_t, levels> of_levels;
         std::array<std::uint8_t, 4> latest;
-        std::size_t oldest = 0;  // place in `latest`
+        std::size_t oldest = 0;  // index of the oldest entry of `latest`
         std::vector<Turn> turns{};
         std::vector<Complex> sine_rows{};
         std::vector<double> growth_rows{};
@@ -202,7 +200,7 @@ private:
         double aside = 0;
 
         void set(const Moment& there, double tau) { aside = 0, moment = &there, place = tau; }
-        /// The way from there to the point aside.
+        /// The integral from there to the point aside.
         [[nodiscard]] double further_way() const;
     };
 
@@ -210,7 +208,7 @@ private:
     void make_table();
     std::uint8_t new_turn(double tau);
     void make_turn(double tau, Turn& to);
-    /// The factors of a step of any length.
+    /// The factors of a time step of any length.
     const Turn& turn_by(double tau) {
         for (const std::uint8_t slot : table_.latest) {
             if (slot != none && table_.turns[slot].tau == tau) return table_.turns[slot];
@@ -259,7 +257,7 @@ private:
     double sines_fourth_ = 0, sines_size_ = 0;
     Table table_;
 
-    Moment start_, first_, second_, other_;  // two alternate for the walk, one for at()
+    Moment start_, first_, second_, other_;  // two alternate for the walk, other_ is for at()
     const Moment* now_ = &start_;
     Moment* next_ = &first_;
     double place_ = 0, next_place_ = 0;

@@ -7,11 +7,12 @@ namespace dinal::motion::exact {
 
 struct Exact {
     static const MethodText about;
-    /// Supports native terms other than chirp and gaussian, the spring k, no walls, and dry friction that is constant
-    /// in each direction.
+    /// An error unless M and system are supported: native terms other than chirp and gaussian, the spring k, no walls,
+    /// and dry friction that is constant in each direction.
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
-    /// Returns whether its arcs are short: lines or powers of t with a damping by which the motion follows them late.
+    /// Returns whether arcs must be short: a strongly damped motion under lines or powers of t, which it follows with a
+    /// delay.
     [[nodiscard]] static bool goes_slowly(const model::Oscillator& system, const model::Excitation& excitation);
     [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
     [[nodiscard]] Run run(const Problem& problem) const;

@@ -12,8 +12,8 @@ namespace {
 constexpr double decay_of_an_arc = 4;
 /// The interval over which a creep is detected, in natural periods.
 constexpr double creeps_over = 0.5 * (1 - 1e-9);
-/// The greatest cost of an arc in radians of its parts: a fraction of a second of computation. The monitor is called
-/// after so many arcs or rows.
+/// The greatest cost of an arc in radians of its parts, a fraction of a second of computation. The next two limit the
+/// arcs and rows between calls of the monitor.
 constexpr double greatest_cost = 1e7;
 constexpr double arcs_between_questions = 16;
 constexpr std::size_t rows_between_questions = 1U << 16U;
@@ -80,7 +80,7 @@ bool ExactEngine::advance() {
     return contact_.for_good(moment()) ? rest_until_end() : stay();
 }
 
-/// Writes the remaining rows at rest, of which there may be many.
+/// Writes the remaining rows of a mass at rest, in portions if there are many.
 bool ExactEngine::rest_until_end() {
     double until = window_.end;
     for (std::size_t count = 1; rows_.next_time() < window_.end; ++count) {
@@ -106,8 +106,8 @@ void ExactEngine::finish() {
 
 // ---- moving
 
-/// Returns whether the motion is far larger than the torques acting on it. The way has the rounding of the initial
-/// angle, which is too coarse once the motion has decayed.
+/// Returns whether the motion is far larger than the torques could cause. Its rounding would be too coarse once it has
+/// decayed, so its arcs must be short.
 bool ExactEngine::comes_from_afar() const {
     constexpr double far = 1024;
     const double k = system_.stiffness(), w0 = arc_.free().w0();
@@ -139,7 +139,7 @@ bool ExactEngine::move() {
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
     if (crept) tau = *zero;
-    // At a zero of the velocity the way is the one near it, at the last call of at().
+    // At a zero of the velocity, way() is the displacement at the last call of at(), which is near the zero.
     const Arc::Point y = zero ? Arc::Point{arc_.velocity().way(), 0} : arc_.at(tau);
     const Clock theta = Clock{y_.theta, theta_rest_}.later(y.way);
     if (!std::isfinite(theta.hi) || !std::isfinite(y.velocity)) return fail(model::Outcome::state_not_finite);
@@ -157,7 +157,7 @@ bool ExactEngine::move() {
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
-/// The initial derivatives of the velocity at a standstill.
+/// The initial value and derivatives of the velocity at a standstill.
 WalkedCurve::End ExactEngine::start_from_rest(double start_pull) const {
     const double first = start_pull / system_.inertia();
     return {0, first, (formula_.slope() - system_.damping() * first) / system_.inertia()};
@@ -208,7 +208,8 @@ std::optional<double> ExactEngine::stop(double start_pull, double length, bool& 
     return found->tau;
 }
 
-/// Puts a mass that has crept within rounding of its equilibrium exactly there: the limit of sticking if Re = Rd.
+/// Sets a mass that has crept to within rounding of its equilibrium exactly there, which is the limit of sticking if Re
+/// = Rd.
 void ExactEngine::snap_to_equilibrium() {
     const double torques = std::fabs(M_) + system_.stiffness() * std::fabs(y_.theta) + system_.greatest_holding();
     const double place = (M_ - system_.braking(contact_.motion())) / system_.stiffness();
@@ -217,7 +218,7 @@ void ExactEngine::snap_to_equilibrium() {
     theta_rest_ = 0;
 }
 
-/// Without friction a turn is only recorded.
+/// Records turns without friction, which do not change the motion.
 void ExactEngine::record_turns(double start_pull, double length) {
     WalkedCurve& velocity = arc_.velocity();
     // At equilibrium the velocity changes sign by rounding alone.
@@ -239,8 +240,8 @@ void ExactEngine::record_turns(double start_pull, double length) {
     } else if (contact_.motion() == model::Motion::stuck) {
         contact_.set_direction(model::motion_of(y_.velocity));
     }
-    // Tries the previous interval between turns first, otherwise walks.
-    bool behind = false;  // whether the walk is at or before the last turn
+    // Tries the previous interval between turns first, otherwise searches.
+    bool behind = false;  // whether the walk has not passed the last turn
     double turn = 0;
     while (velocity.place() < length) {
         exit.set_band(inside(contact_.motion()));
@@ -264,7 +265,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
             if (!found->crosses) continue;
         }
         turn = found->tau;
-        // At a zero of the velocity the way is the one near it.
+        // At a zero of the velocity, way() is the displacement near it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
         contact_.turned({clock_.after(turn), theta, formula_.value(turn)});
         if (behind && !velocity.asked_ahead()) velocity.look_at(turn);

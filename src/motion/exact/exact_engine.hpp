@@ -1,5 +1,5 @@
-// The exact integrator: arcs in closed form (arc.hpp), each up to its first event. first_exit.hpp proves that it is the
-// first; contact.hpp decides at velocity zero.
+// The exact integrator: arcs in closed form (arc.hpp), each up to its first event. first_exit.hpp proves that no
+// earlier event exists; contact.hpp decides at velocity zero.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ namespace dinal::motion::exact {
 
 class ExactEngine {
 public:
-    /// `arcs` may be null: then only the rows are kept.
+    /// `arcs` may be null; then only the rows are stored.
     ExactEngine(const Problem& problem, RowWriter& rows, std::vector<model::Event>& events, Arcs* arcs);
 
     model::Outcome run();
@@ -45,7 +45,7 @@ private:
         if (const double theta = contact_.place_at_stop(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
         return contact_.decide(moment());
     }
-    /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
+    /// Continues after a decision at velocity zero; `sane` is false after too many standstills in a row.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
     bool asked_to_stop(double t);
     bool fail(model::Outcome outcome) {
@@ -70,7 +70,7 @@ private:
     void record_turns(double start_pull, double length);
     void snap_to_equilibrium();
 
-    // Advances the present to `tau` after the beginning of the arc.
+    // Advances the present to `tau` after the start of the arc.
     bool end_arc(double tau, model::State state, double start_pull);
     bool rows_until(double& tau, model::State& end, bool standing);
     void keep(double tau, double start_pull, bool standing);
@@ -91,19 +91,19 @@ private:
     bool tell_line(double h, double M, model::State end, double start_pull);
     bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
 
-    /// The cost of arcs since the last call of the monitor, in radians of their parts; a line is cheap.
+    /// The cost of the arcs since the last call of the monitor, in radians of their parts; lines of a record are cheap.
     struct Cost {
         static constexpr double between_calls = 1e7, of_a_line = between_calls / 65536;
         double spent = std::numeric_limits<double>::infinity();
         [[nodiscard]] bool is_due() const { return spent >= between_calls; }
     };
-    /// The usual lengths of stretches.
+    /// The lengths of recent intervals, which the next ones are likely to repeat.
     struct Habits {
         std::array<Habit, 2> moves{}, rests{};  // backward and forward: intervals between standstills
-        Habit swings{};                         // intervals between turns without a standstill
-        Habit* rest = rests.data();             // of the present or next rest
+        Habit swings{};                         // intervals between turns without friction
+        Habit* rest = rests.data();             // habit of the present or next rest
     };
-    /// Limits the growth of M on an arc, in e-folds: the end of an arc determines the lengths of all its looks.
+    /// Limits the growth of M on an arc, in e-folds: the bound at the end of an arc limits all its looks.
     static constexpr double growth_of_an_arc = 4;
 
     model::Lowered system_;

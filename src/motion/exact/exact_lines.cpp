@@ -1,4 +1,4 @@
-// The exact engine along a record of samples: line after line while no event is possible.
+// The exact engine for a record of samples: advances line by line while no event is possible.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// The record that makes up all of M, or nullptr.
+/// The record if it is all of M, otherwise nullptr.
 const model::Component* record_of(const model::Excitation& excitation) {
     const model::Component* record = nullptr;
     for (const model::Component& component : excitation.components()) {
@@ -71,7 +71,7 @@ bool ExactEngine::along_lines() {
     return true;
 }
 
-/// At rest: a line within the limits at both ends is within them throughout.
+/// Advances a mass at rest: a line within the limits at both ends is within them throughout.
 void ExactEngine::rest_along(double until) {
     const double k_theta = system_.stiffness() * y_.theta;
     const double rounding = 64 * epsilon * (system_.greatest_holding() + std::fabs(k_theta));
@@ -85,9 +85,10 @@ void ExactEngine::rest_along(double until) {
     }
 }
 
-/// In motion: the velocity deviates from its chord by at most h^2/8 times the bound of its second derivative.
+/// Advances a mass in motion: its velocity deviates from its chord by at most h^2/8 times the bound of its second
+/// derivative.
 void ExactEngine::move_along(double until) {
-    // The rounding error of the angle is added every few lines; until then it is below the rounding of the pull.
+    // The rounding error of the angle is added every few lines; until then it is below the rounding of the torque.
     constexpr std::size_t lines_between_roundings = 16;
     const model::Motion motion = contact_.motion();
     const double sign = model::sign_of(motion), braking = system_.braking(motion), k = system_.stiffness();
@@ -122,7 +123,7 @@ void ExactEngine::move_along(double until) {
             if (!tell_line(h, next_M, {end, y.velocity}, pull_of(k, theta, M, braking))) return;
             next_row = rows_.next_time();
         }
-        // The angle is the sum of all ways and of their rounding errors.
+        // The angle is the sum of all displacements; `rest` collects their rounding errors.
         const double sum = theta + y.way, part = sum - theta;
         rest += (theta - (sum - part)) + (y.way - part);
         theta = sum, velocity = y.velocity, M = next_M;
@@ -142,7 +143,7 @@ bool ExactEngine::tell_line(double h, double M, model::State end, double start_p
     return end_line(h, M, end, false, start_pull);
 }
 
-/// The same for any line. Returns false if the run ends.
+/// Writes the rows and stores the arc of any line. Returns false if the run ends.
 bool ExactEngine::end_line(double h, double M, model::State state, bool standing, double start_pull) {
     double tau = h;
     if (rows_.next_time() < record_.time(1) && !rows_until(tau, state, standing)) {

@@ -8,12 +8,12 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// The greatest cost of a look at M, in radians of its parts; limits the accumulated rounding.
+/// The greatest cost of an arc at rest, in radians of its parts; it limits the accumulated rounding.
 constexpr double greatest_cost_at_rest = 1e6;
 
 }  // namespace
 
-/// Makes M a curve from the present on.
+/// Makes a curve of M from the present on.
 void ExactEngine::make_load() {
     load_.clear();
     for (const double c : formula_.powers()) load_.add_power(c);
@@ -55,7 +55,7 @@ bool ExactEngine::stay() {
             habits_.rest->kept(found->tau);
             return release_at(found->tau, side, true);
         }
-        // M touches the limit within rounding: its exact value decides.
+        // M touches the limit within rounding, so its exact value decides.
         if (contact_.pulled(excitation_.value(clock_.after(found->tau)), y_.theta) == side) {
             return release_at(found->tau, side, false);
         }
@@ -96,7 +96,7 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
         pull_at_release_ = model::sign_of(towards) * contact_.limit(towards) - system_.braking(towards);
     }
     const bool sane = contact_.release(moment(), towards);
-    if (contact_.stuck()) pull_at_release_.reset();  // a creep that ended in rest
+    if (contact_.stuck()) pull_at_release_.reset();  // the creep has ended in rest
     return go_on(sane);
 }
 

@@ -7,11 +7,11 @@ namespace dinal::motion::exact {
 
 namespace {
 
-/// Bounds are refreshed after so many looks: those of a decaying motion shrink.
+/// Bounds are recomputed after this many looks, because those of a decaying motion shrink.
 constexpr unsigned looks_between_bounds = 8;
 constexpr double hermite = 1.0 / 384;  // factor of max|f''''| h^4 in the error of the cubic
-/// The accuracy of the cubic's zero, as a part of a look: one more step of Newton's method squares it, and the cubic is
-/// only near the curve.
+/// The accuracy of the cubic's zero, as a fraction of a look. One more Newton step squares it, and the cubic only
+/// approximates the curve.
 constexpr double near_enough = 0.01;
 /// A motion counts as a departure only if it is this many times faster than a Creep.
 constexpr double slowest_apart = 16;
@@ -31,7 +31,8 @@ Exit FirstExit::crossing(double tau, int side) {
     return {tau, side, true};
 }
 
-/// Chooses the longest look whose error bound fits the distance from the edges, or the distance it approaches.
+/// Chooses the longest look whose error bound fits the distance from the edges, or the distance by which the curve
+/// approaches them.
 void FirstExit::choose_level(double bound, double rounding) {
     const double away = far_from_edges(rounding), heads = std::fabs(curve_.here().slope) / 12;
     const auto fits = [&](int level) { return bound * curve_.hides(level) <= away + heads * curve_.length(level); };
@@ -44,12 +45,12 @@ double FirstExit::farthest_look(double bound, double rounding) const {
     return std::sqrt(std::sqrt(far_from_edges(rounding) / (bound * hermite)));
 }
 
-/// A quarter of the distance from the edges; at an edge, of the rounding.
+/// A quarter of the distance from the edges, but at least of the rounding.
 double FirstExit::far_from_edges(double rounding) const {
     return std::max(std::fabs(margin(curve_.here().f)), rounding) / 4;
 }
 
-/// Detects a creep if looks are shorter than one: whether the curve stays slower than rounding over the shortest one.
+/// Returns whether the curve stays slower than rounding over the shortest one.
 bool FirstExit::creeps_from_here(double until) {
     const double h = creep_.shortest, from = curve_.place();
     const auto slow = [this](double speed) { return speed <= creep_.fastest; };
@@ -62,7 +63,7 @@ bool FirstExit::creeps_from_here(double until) {
     return crept_ = true;
 }
 
-/// The length of a look outside the table.
+/// The length of a look that the table does not have.
 double FirstExit::untabulated_length(double bound, int level, double left, int finer) const {
     if (bound == 0) return std::ldexp(left, -finer);  // a polynomial of low degree has no error
     constexpr int last = WalkedCurve::levels - 1;
@@ -71,7 +72,7 @@ double FirstExit::untabulated_length(double bound, int level, double left, int f
 
 std::optional<Exit> FirstExit::search(double until) {
     end_ = {};
-    int finer = 0, beyond = 0;  // halvings of the present look, and those beyond the table
+    int finer = 0, beyond = 0;  // halvings of the present look, and those for which the table has no level
     double far = 0;
     double rounding = 0, bound = bound_;
     for (unsigned looks = 0; curve_.place() < until; ++looks) {
@@ -116,7 +117,7 @@ std::optional<Exit> FirstExit::search(double until) {
             finer = 0;
             continue;
         }
-        if (!std::isfinite(cubic.high - cubic.low)) return {};  // not finite: the run ends there
+        if (!std::isfinite(cubic.high - cubic.low)) return {};  // not finite: the run ends here
         const int side = there.f < band_.low - rounding ? -1 : there.f > band_.high + rounding ? 1 : 0;
         const double doubt = fourth * of_slope;
         const bool one_way = side < 0 ? cubic.rise() + doubt < 0 : cubic.fall() - doubt > 0;
@@ -167,7 +168,7 @@ double FirstExit::cubic_crossing(const WalkedCurve::Value& a, const WalkedCurve:
     return x * h;
 }
 
-/// The zero of the Taylor polynomial about a guess.
+/// Approximates a zero by the Taylor polynomial about a guess.
 FirstExit::Zero FirstExit::near(double guess, const WalkedCurve::Jet& y, double edge, double bound) {
     // As powers of x in units of the slope: x = a + q2 x^2 + q3 x^3 + ...
     const double per = -1 / y[1], a = (y[0] - edge) * per, q2 = y[2] * per, q3 = y[3] * per;
@@ -200,7 +201,7 @@ FirstExit::Zero FirstExit::near(double guess, const WalkedCurve::Jet& y, double 
     return said(x);
 }
 
-/// Refines a guess: by the Taylor polynomial about it if that is accurate to rounding, otherwise step by step.
+/// Refines a guess by the Taylor polynomial about it if that is accurate to rounding, otherwise by iteration.
 double FirstExit::polish(double from, double to, double guess, double edge, int side, double bound) {
     const Zero zero = near(guess, curve_.jet(guess), edge, bound);
     if (zero.exact && zero.tau >= from && zero.tau <= to) return zero.tau;
@@ -208,10 +209,9 @@ double FirstExit::polish(double from, double to, double guess, double edge, int 
     return step_by_step(from, to, guess, edge, side);
 }
 
-/// Returns whether the curve is on one side of an edge on the whole stretch, its ends excepted, where it must not be on
-/// the other side. The curve differs from the quintic through values and two derivatives at both ends by at most
-/// max|f^(6)| s^3 (h - s)^3/720. So the Bernstein coefficients of degree six decide; only the middle one contains the
-/// error.
+/// Returns whether the curve is on one side of an edge on the whole interval except at its ends, where it may touch the
+/// edge. The curve differs from the quintic through values and two derivatives at both ends by at most max|f^(6)| s^3
+/// (h - s)^3/720. So the Bernstein coefficients of degree six decide; only the middle one contains the error.
 bool FirstExit::apart(const WalkedCurve::End& a, const WalkedCurve::End& b, double h, double edge, double side,
                       const Doubt& doubt) {
     const double fifth = side * h * (1.0 / 5), square = side * (h * h) * (1.0 / 20), cube = h * h * h;
@@ -228,7 +228,7 @@ std::optional<Exit> FirstExit::at_once(double from, const WalkedCurve::End& star
     constexpr double off_by_half = 1.5;
     until = std::min(until, from + off_by_half * guess);
     double bound = curve_.may_grow() ? curve_.fourth_bound(until) : bound_;
-    // The walk is near `from`, where decaying parts are hardly larger.
+    // The walk is near `from`, where decaying parts have hardly changed.
     if (by == By::a_look) bound = std::min(bound, 1.01 * curve_.fourth_bound(until));
     double tau = from + guess;
     bool high = std::isinf(band_.low);
@@ -263,7 +263,7 @@ void FirstExit::depart(double from, const WalkedCurve::End& start, double until)
         const WalkedCurve::Value there = curve_.look_at(from + h);
         const double third = h * (1.0 / 3), b1 = third * start.slope, b2 = there.f - third * there.slope;
         const double middle = std::isinf(band_.high) ? b1 + b2 : -(b1 + b2);
-        // The cubic's Bernstein coefficients, raised to degree four: the error vanishes at both ends.
+        // The cubic's Bernstein coefficients, raised to degree four; the error vanishes at both ends.
         const double last = std::isinf(band_.high) ? 3 * b2 + there.f : -(3 * b2 + there.f);
         if (middle > bound_ * (h * h) * (h * h) * (1.0 / 72) && last > 0 && margin(there.f) > 0) break;
     }

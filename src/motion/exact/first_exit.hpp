@@ -1,8 +1,8 @@
-// Finds the first exit of a curve from a band, with proof: a bound of the fourth derivative limits the curve between
-// its looks.
+// Finds the first exit of a curve from a band, with proof: a bound of the fourth derivative limits the curve within a
+// step, called a look.
 //
-// On a look of length h the curve is within max|f''''| h^4/384 of the cubic through values and slopes at both ends, and
-// a cubic is within the hull of its Bernstein coefficients.
+// Within a look of length h the curve is within max|f''''| h^4/384 of the cubic through values and slopes at both ends,
+// and a cubic is within the hull of its Bernstein coefficients.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@ struct Band {
 };
 
 struct Exit {
-    double tau;    ///< at a crossing, way() refers to this point
+    double tau;    ///< time; at a crossing, way() of the curve refers to it
     int side;      ///< +1 through the high edge, -1 through the low one
-    bool crosses;  ///< otherwise it touches the edge within rounding without clearly crossing it
+    bool crosses;  ///< whether it crosses; otherwise it touches the edge within rounding
 };
 
-/// Detects a motion slower than rounding: speed (C + I/h) is at most `least`, a torque, throughout a look of length h
-/// >= `shortest`. By default detects none.
+/// The criterion of a creep, a motion slower than rounding: speed (C + I/h) is at most the torque `least` throughout a
+/// look of length h >= `shortest`. By default nothing is a creep.
 struct Creep {
     double damping = 0, inertia = 0, shortest = std::numeric_limits<double>::infinity(), least = 0;
     double fastest = -1;  ///< greatest speed over the shortest look
@@ -34,7 +34,8 @@ struct Creep {
     [[nodiscard]] double resistance() const { return damping + inertia / shortest; }
 };
 
-/// The length of the previous stretch of this kind, tried first as the next end. After failures it pauses for a while.
+/// The length of the previous interval of some kind, tried first for the next one. After failures it pauses for a
+/// while.
 class Habit {
 public:
     Habit() = default;
@@ -51,7 +52,7 @@ public:
         if (!(std::fabs(length - length_) <= same * length)) length_ = length;
         missed_ = 0;
     }
-    /// The attempt failed.
+    /// Registers that the attempt failed.
     void missed() {
         constexpr unsigned most = 16;
         waits_ = missed_ = std::min(2 * missed_ + 1, most);
@@ -63,7 +64,7 @@ private:
     unsigned waits_ = 0, missed_ = 0;
 };
 
-/// Returns whether a curve with this bound can be searched; later bounds may be twice as large.
+/// Returns whether a curve with this bound can be searched. Later bounds may be twice as large.
 inline bool within_range(double fourth_bound) {
     return std::isfinite(4 * fourth_bound);
 }
@@ -71,18 +72,19 @@ inline bool within_range(double fourth_bound) {
 class FirstExit {
 public:
     FirstExit(WalkedCurve& curve, Band band, double floor) : curve_(curve), band_(band), floor_(floor) {}
-    /// Sets a bound of the fourth derivative from the present point on.
+    /// Sets a bound of the fourth derivative from the present point on, instead of computing one.
     void bounded(double bound) { bound_ = bound; }
 
-    /// Watches for a creep.
+    /// Also ends the search at a creep.
     void watch(const Creep& creep) { creep_ = creep; }
     [[nodiscard]] bool crept() const { return crept_; }
 
     /// The first exit from the present point to `until`; without one, the walk moves to `until`. A touch is reported
-    /// once: the next search starts behind it.
+    /// once, and the next search starts after it.
     std::optional<Exit> search(double until);
-    /// The first exit after `from`, where the curve is `start`, if it is near `from` + `guess` and proven to be the
-    /// first from both ends. Does not move the walk, which is near `from` for `By::a_look`. Requires a bound.
+    /// The first exit after `from`, where the curve is `start`. Empty unless it is near `from` + `guess` and proven,
+    /// from both ends, to be the first. Does not move the walk, which must be near `from` for `By::a_look`. Requires a
+    /// bound.
     enum class By { the_beginning, a_look };
     std::optional<Exit> at_once(double from, const WalkedCurve::End& start, double guess, double until,
                                 By by = By::the_beginning);
@@ -111,7 +113,7 @@ private:
                                         double edge) const;
     struct Zero {
         double tau;
-        bool exact;  ///< whether it is exact to rounding
+        bool exact;  ///< whether the error is below rounding
     };
     Zero near(double guess, const WalkedCurve::Jet& y, double edge, double bound);
     struct Doubt {

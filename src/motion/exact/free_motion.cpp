@@ -39,7 +39,7 @@ LinearMotion::LinearMotion(const model::Lowered& system) {
 FreeStep LinearMotion::after(double tau) const {
     const double x = w1_ * tau;
     if (swings_) return step(turned(tau));
-    if (x < 0.5) {  // critical or nearly so: one formula for both sides
+    if (x < 0.5) {  // critical or nearly so: the same formula below and above
         const double fade = std::exp(-delta_ * tau);
         const double moved = x == 0 ? fade * tau : fade * tau * (std::sinh(x) / x);
         const double c = fade * (x == 0 ? 1 : std::cosh(x));

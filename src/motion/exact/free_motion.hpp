@@ -16,8 +16,8 @@ struct FreeStep {
     double along, moved, kept;
 };
 
-/// The coordinates of a free motion: theta and velocity, or far above critical damping the slow and the fast part of
-/// the velocity. There the slow velocity is w0 theta/(2 zeta), below the rounding of w0 theta.
+/// The coordinates of a free motion: theta and velocity, or far above critical damping the slow and fast parts of the
+/// velocity, because there the slow velocity, w0 theta/(2 zeta), is below the rounding of w0 theta.
 struct FreeParts {
     double first, second;
 };
@@ -29,15 +29,15 @@ public:
     [[nodiscard]] double w0() const { return w0_; }
     [[nodiscard]] double w0_squared() const { return w0_squared_; }
     [[nodiscard]] double delta() const { return delta_; }
-    /// The rate of the faster of its two parts, per time unit: no derivative grows faster.
+    /// The rate of the faster of its two parts, per time unit, which bounds the growth of derivatives.
     [[nodiscard]] double fastest() const { return fastest_; }
-    /// The rate of the part that does not decay at once; it also converts the rounding of an angle to a velocity.
+    /// The rate of the part that does not decay at once; it also converts rounding of an angle to that of a velocity.
     [[nodiscard]] double lasting() const { return apart_ ? slow_ : w0_; }
     /// The decay rate of its slowest part, per time unit.
     [[nodiscard]] double decay() const { return slow_; }
     [[nodiscard]] FreeStep after(double tau) const;
 
-    // The same motion by its parts:
+    // The motion in FreeParts:
     [[nodiscard]] FreeParts parts(double theta, double velocity) const;
     /// The step for FreeParts.
     [[nodiscard]] FreeStep parts_after(double tau) const;
@@ -76,7 +76,7 @@ private:
     double w1_ = 0, w1_rest_ = 0;  // sqrt |w0^2 - delta^2| and its rounding error
     double slow_ = 0, fast_ = 0;   // both rates of an overdamped system
     bool swings_;
-    bool apart_;  // whether its two parts are followed separately
+    bool apart_;  // whether its two parts are stored separately
     double fastest_;
     double by_first_, by_second_;  // acceleration per unit of each part
     double energy_fourth_;         // bound of |v''''| for a speed of 1 or an angle of 1/w0

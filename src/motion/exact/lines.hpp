@@ -9,7 +9,7 @@
 namespace dinal::motion::exact {
 
 /// I q'' + C q' + k q = pull + slope t with q(0) = 0: linear in the initial velocity, pull and slope. Caches the
-/// factors of one length, as records are usually sampled evenly.
+/// factors for one length, because records are usually sampled evenly.
 class LineStep {
 public:
     LineStep(const model::Lowered& system, const LinearMotion& free)
@@ -20,32 +20,32 @@ public:
           per_w0_(1 / free.w0()),
           longest_(short_of / free.fastest()) {}
 
-    /// The initial values of the stretch.
+    /// The initial values of the interval.
     struct Start {
         double velocity, pull, slope;
     };
     struct End {
         double way, velocity;
-        double bend;  ///< bound of |the second derivative of the velocity| on the way
+        double bend;  ///< bound of |the second derivative of the velocity| on the interval
     };
-    /// Returns whether the factors are those of this length. Times are rounded: differences up to a part of 1e-9 are
-    /// corrected to full accuracy in over().
+    /// Returns whether the factors are those of this length. Relative differences up to 1e-9, due to the rounding of
+    /// times, are corrected in over().
     [[nodiscard]] bool is_made_for(double length) const {
         constexpr double nearly = 1e-9;
         return std::fabs(length - length_) <= nearly * length_;
     }
-    /// Returns whether a stretch is short enough for the factors, some tenths of a radian, and makes them if necessary.
+    /// Returns whether an interval is short enough (some tenths of a radian), and computes its factors if necessary.
     bool takes(double length) {
         if (is_made_for(length)) return true;
         if (!(length <= longest_)) return false;
         make(length);
         return true;
     }
-    /// The end of a stretch; requires takes(length).
+    /// The values at the end of an interval. Requires takes(length).
     [[nodiscard]] End over(double length, const Start& start) const {
         const auto& [v, P, S] = start;
         const double more = length - length_;
-        const double way = (v * way_[0] + S * way_[2]) + P * way_[1];  // the pull is known last
+        const double way = (v * way_[0] + S * way_[2]) + P * way_[1];  // this order: the pull is known last
         const double velocity = (v * velocity_[0] + S * velocity_[2]) + P * velocity_[1];
         const double torque = P + S * length_ - damping_ * velocity - stiffness_ * way;
         const double first = (P - damping_ * v) * per_inertia_;

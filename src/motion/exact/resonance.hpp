@@ -26,8 +26,8 @@ inline double length_of(Complex z) {
 struct Resonance {
     Complex mu, from_root;                          ///< mu - lambda
     Complex growing, turning;                       ///< the curve is Im(growing g(tau) + turning exp(mu tau))
-    Complex way_growing = 0, way_turning = 0;       ///< the same for the way, if the curve is a velocity
-    Complex slope_growing = 0, slope_turning = 0;   ///< the same for the slope
+    Complex way_growing = 0, way_turning = 0;       ///< coefficients of the integral, if the curve is a velocity
+    Complex slope_growing = 0, slope_turning = 0;   ///< coefficients of the derivative
     double fourth_growing = 0, fourth_turning = 0;  ///< bounds for the fourth derivative
 
     /// g(tau), given exp(lambda tau).

@@ -13,7 +13,7 @@ namespace dinal::motion::rk4 {
 
 namespace {
 
-/// The motion at a time by replaying steps from the checkpoint before; bit for bit the same as in the run.
+/// Evaluates the motion by repeating steps from the previous checkpoint, bit for bit as in the run.
 class Replay final : public Course {
 public:
     Replay(const Problem& problem, const Rk4& method)
@@ -29,7 +29,7 @@ private:
     Window window_;
 };
 
-/// Also checks that the next checkpoint is reproduced to the last bit; it is not if a script in M has changed since.
+/// Also checks that the next checkpoint is reproduced to the last bit, which fails if a script in M has changed since.
 text::Expected<model::State> Replay::at(double t) const {
     const auto grid = Grid::at({t}).within(window_);
     if (!grid) return grid.error();

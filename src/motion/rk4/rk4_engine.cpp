@@ -11,7 +11,7 @@ namespace {
 /// at every second one.
 // NOTE: a step too long for its system may have as many genuine events, so this applies to short steps only.
 double at_once(const Problem& problem, double h) {
-    constexpr double a_piece = 1.0 / 256;  // part of a step, far below the distance of real events
+    constexpr double a_piece = 1.0 / 256;  // fraction of a step, far below the distance of real events
     const bool is_short = h * h * (problem.system.stiffness() / problem.system.inertia()) < 0.01;
     return problem.drive.M().has_feedback() && is_short ? 2 * h : a_piece * h;
 }
@@ -112,8 +112,8 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
 }
 
 // The plain loops advance from step i of the block at n until something happens, and return the index of that step,
-// with the state at its beginning. A step is left to the careful way if the velocity changes sign in it, or dips
-// towards zero and returns, as it may have crossed zero twice.
+// with the state at its beginning. A step is left to careful_step() if the velocity changes sign in it, or approaches
+// zero and recedes, as it may then have crossed zero twice.
 
 std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
     block_.begin(i, count, y_, M_, friction_);

@@ -71,8 +71,8 @@ private:
     bool stay(double end, bool break_at_end, const Sampled* known);
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
-    /// The states at which feedback is evaluated: those of the trial step, or, next to a jump at velocity zero, only on
-    /// this side of it.
+    /// How feedback is evaluated: at the states of the trial step, or, next to a jump at velocity zero, only on the
+    /// present side of it.
     enum class Asks { freely, beside };
     [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
     [[nodiscard]] bool lost_in_rounding(const model::State& y, double a) const;

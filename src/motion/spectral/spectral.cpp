@@ -17,7 +17,7 @@ Resolution Spectral::resolution(const model::Oscillator& system) const {
 }
 
 double Spectral::widest_looks() const {
-    // The samples at both ends of the widest gap must not straddle a pulse.
+    // No pulse may fit between the samples at both ends of the widest gap.
     constexpr double within = chebyshev::widest_gap * (1 + 1e-9);
     return narrowest / within;
 }

@@ -10,7 +10,7 @@ namespace dinal::motion::spectral {
 
 /// The longest panel in natural periods, whatever max_panel is.
 inline constexpr double longest_panel = 0.6;
-/// The longest panel as a part of the run for a block without a spring, which has no period.
+/// The longest panel of a block without a spring, which has no period, as a fraction of the run.
 inline constexpr double part_of_run = 1.0 / 16;
 
 struct Spectral {

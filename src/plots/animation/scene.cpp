@@ -34,7 +34,7 @@ Interval reach_of(const std::vector<Frame>& frames, const motion::Run& run, cons
         reach = {std::min(reach.low, theta), std::max(reach.high, theta)};
     };
     for (const Frame& frame : frames) include(frame.t, frame.theta);
-    // Extremes lie between frames: include the turns, which a computed run knows.
+    // The turns are included, because extremes may lie between frames.
     for (const model::Event& event : run.events) include(event.t, event.theta);
     const auto t = run.find("t"), theta = run.find("theta");
     for (Eigen::Index i = 0; t && theta && i < run.size(); ++i) include(run.rows(i, *t), run.rows(i, *theta));
@@ -43,7 +43,7 @@ Interval reach_of(const std::vector<Frame>& frames, const motion::Run& run, cons
         reach.high = std::isfinite(walls->upper) ? std::max(reach.high, walls->upper) : reach.high;
     }
     const double size = std::max(std::fabs(reach.low), std::fabs(reach.high));
-    if (reach.length() <= 1e-9 * size || reach.length() < shortest_axis) {  // it never moved
+    if (reach.length() <= 1e-9 * size || reach.length() < shortest_axis) {  // it has never moved
         const double half = size > 10 * shortest_axis ? size / 2 : 1;
         return {reach.low - half, reach.high + half};
     }
@@ -184,7 +184,7 @@ private:
             attribute, type, scene_.seconds, values(track, value));
     }
 
-    /// Adds colour changes only where they occur.
+    /// Changes colours only at the frames where they change.
     void add_colours(const char* attribute, const Track& track, const char* moving) {
         std::string times, inks;
         const auto count = static_cast<double>(track.frames.size() - 1);
@@ -296,7 +296,7 @@ private:
                                        std::pair(body.walls ? body.walls->upper : INFINITY, block / 2)}) {
             if (!std::isfinite(wall)) continue;
             add("<rect x=\"{:.1f}\" y=\"{}\" width=\"{}\" height=\"12\" fill=\"{}\"/>\n", x_of(i, wall) + at,
-                floor - 12, post, grey_ink);  // the spring passes it
+                floor - 12, post, grey_ink);  // low enough that the spring passes above it
         }
         if (!body.spring) return;
         const double anchor = centre(i) - cell_ / 2 + 3;

@@ -26,11 +26,11 @@ struct Track {
     std::optional<model::Walls> walls = {};
     bool spring = true;
     bool belt = false;
-    std::string name = {};  ///< empty of a single body without a name
+    std::string name = {};  ///< empty for a single unnamed body
     model::Units units = {};
 
     [[nodiscard]] double at(double theta) const { return (theta - reach.low) / reach.length(); }
-    /// The displacement of a pattern at rest, as a part of the reach.
+    /// The displacement of the surface, as a fraction of the reach.
     [[nodiscard]] double shift(const Frame& frame) const { return frame.surface / reach.length(); }
 };
 
