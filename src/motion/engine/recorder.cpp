@@ -263,7 +263,9 @@ double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, c
 
 void Recorder::keep(const Now& now, const Segment& segment, double length, double longest_delay) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay == 0)) return;
-    Kept kept{.start = segment.start, .h = segment.h, .length = length, .begin = now.y, .series = segment.series};
+    Kept kept{.start = segment.start, .h = segment.h, .length = length};
+    kept.y.reserve(now.y.size());
+    for (std::size_t k = 0; k < now.y.size(); ++k) kept.y.push_back({now.y[k], segment.series[k]});
     // For the legs of its course.
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
     const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
