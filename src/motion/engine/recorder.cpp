@@ -7,6 +7,7 @@
 
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/walls.hpp"
+#include "motion/first_below.hpp"
 
 namespace dinal::motion::engine {
 
@@ -132,8 +133,21 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     const Watched watched(v, exact, 0, series);
     std::vector<double>& zeros = room_.zeros;
     zeros.assign(1, -1);
+    const cheb::Series<node_count - 1> slope = cheb::derivative(series);
+    // The next zero of a velocity that is clear of zero at the beginning, or passes zero clearly before.
+    const auto next_zero = [&]() -> std::optional<double> {
+        const double from = zeros.back();
+        Nodes values = v;
+        for (double& each : values) each *= half;
+        const cheb::Bounded<node_count> curve(half, series, slope, values);
+        const double rate = from > -1 ? std::max(0.0, curve.slope(from)) : 0, far = rate / curve.second_bound();
+        const double clear = from > -1 ? rate * far / 2 : values[0];
+        if (half == 0 || !(clear > 4 * curve.floor()) || !(cheb::tail(series) <= 1e-9 * moving))
+            return watched.leaves(half, zeros.back());
+        return cheb::first_below(curve, std::min(1.0, from > -1 ? from + far : from));
+    };
     for (;;) {
-        const auto x = watched.leaves(half, zeros.back());
+        const auto x = next_zero();
         if (!x || *x >= until - 1e-12) break;
         zeros.push_back(*x);
         half = -half;
@@ -141,11 +155,11 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     // Between two zeros it may be no more than the error of a series that fits what comes before or after.
     const auto moves = [&](std::size_t k) {
         const double from = zeros[k], to = k + 1 < zeros.size() ? zeros[k + 1] : until;
-        double most = std::fabs(exact((from + to) / 2));
+        const double least = 8 * problem_.tolerance * moving;
         for (std::size_t j = 0; j < node_count; ++j) {
-            if (cheb::nodes[j] > from && cheb::nodes[j] < to) most = std::max(most, std::fabs(v[j]));
+            if (cheb::nodes[j] > from && cheb::nodes[j] < to && std::fabs(v[j]) > least) return true;
         }
-        return most > 8 * problem_.tolerance * moving;
+        return std::fabs(exact((from + to) / 2)) > least;
     };
     int way = static_cast<int>(heading_[body]);
     bool moved = false;  // on the stretch
