@@ -29,7 +29,7 @@ Flow::Flow(const Mechanics& mechanics, double tolerance, double longest)
       newton_(mechanics),
       allowed_(n_),
       proofs_(mechanics) {
-    fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
+    sizes_.all.resize(n_), fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
     for (auto* of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
 }
@@ -38,7 +38,7 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
                           const std::vector<double>& departing) {
     unresolved_ = std::numeric_limits<double>::infinity();
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
-    find_sizes_at_start(s, begin);
+    sizes_.at_start.find(mechanics_, s, {s.times[0], s.side(0), begin});
     const Attempt attempt = find(s, mode, frame, departing);
     const std::size_t groups = frame.groups();
     if (attempt != Attempt::resolved) {
@@ -111,8 +111,10 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
     mechanics_.sample_loads(s, s.loads);
+    s.driven = s.loads;
     std::size_t good = node_count;
     for (const Nodes& load : s.loads) {
+        if (cheb::sum_of<node_count>([&](std::size_t j) { return 0 * load[j]; }) == 0) continue;
         const auto* const bad = std::find_if(load.begin(), load.end(), [](double M) { return !std::isfinite(M); });
         good = std::min(good, static_cast<std::size_t>(bad - load.begin()));
     }
@@ -249,17 +251,7 @@ double Flow::size_at(std::size_t joint) const {
 }
 
 void Flow::find_sizes(const Segment& s) {
-    for (std::size_t i = 0; i < n_; ++i) sizes_.all[i] = sizes_.at_start[i] + greatest(s.torques[i]);
-}
-
-void Flow::find_sizes_at_start(const Segment& s, const std::vector<double>& begin) {
-    sizes_.at_start.resize(n_), sizes_.all.resize(n_);
-    for (std::size_t i = 0; i < n_; ++i) sizes_.at_start[i] = greatest(s.loads[i]);
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const model::Joint& joint = mechanics_.system().joints[j];
-        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin}) + (j < n_ ? 0 : greatest(s.loads[j]));
-        for (const auto& [body, by] : joint.of) sizes_.at_start[body] += std::fabs(by) * size;
-    }
+    for (std::size_t i = 0; i < n_; ++i) sizes_.all[i] = sizes_.at_start.on_body(i) + greatest(s.torques[i]);
 }
 
 /// Integrates the series of the accelerations, which is cheaper than a fit of velocities and angles. Terms beyond the

@@ -13,6 +13,7 @@
 #include "motion/engine/nodes.hpp"
 #include "motion/engine/noise.hpp"
 #include "motion/engine/segment.hpp"
+#include "motion/engine/torque_sizes.hpp"
 #include "motion/engine/unseen.hpp"
 #include "motion/method.hpp"
 
@@ -52,6 +53,8 @@ public:
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
     }
+    /// Returns the sizes of torques at the beginning of the last one; without loads that depend on the motion.
+    [[nodiscard]] const TorqueSizes& sizes_at_start() const { return sizes_.at_start; }
     /// The longest time between two looks at a function of the time in a stretch.
     [[nodiscard]] virtual double gap(const Segment& segment) const;
     /// The time at which a function of the time breaks in the last one; none if none does.
@@ -108,8 +111,15 @@ protected:
     } offsets_;                           ///< of each body against its group
     std::vector<Nodes> unknown_, found_;  ///< accelerations of the groups and rates, and new ones
     struct {
-        std::vector<double> all, at_start;
+        std::vector<double> all;
+        TorqueSizes at_start;
     } sizes_;  ///< of the torques on each body
+    /// Room, so that a stretch need not allocate it.
+    struct {
+        std::vector<double> torque, load, belt, rate;
+        std::vector<Nodes> lacking;
+        std::array<std::vector<double>, node_count> points;  ///< all of y at a node
+    } room_;
 
 private:
     template <class First, class End>
@@ -128,7 +138,6 @@ private:
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool hides_nothing(Segment& segment, const Mode& mode, double until);
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
-    void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
     /// Returns how great the torques on the angle of a joint are, from those on its bodies.
     [[nodiscard]] double size_at(std::size_t joint) const;
     [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
@@ -137,12 +146,6 @@ private:
     double bad_time_ = 0;
     std::vector<double> allowed_;  ///< of each body's acceleration
     Proofs proofs_;
-    /// Room, so that a stretch need not allocate it.
-    struct {
-        std::vector<double> torque, load, belt, rate;
-        std::vector<Nodes> lacking;
-        std::array<std::vector<double>, node_count> points;  ///< all of y at a node
-    } room_;
 };
 
 /// Noise at single nodes is up to so many times its last coefficients.

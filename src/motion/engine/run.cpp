@@ -154,7 +154,8 @@ bool Engine::advance() {
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
-    sizes_.find(mechanics_, segment_, now_.here());
+    sizes_ = solver_->sizes_at_start();
+    if (mechanics_.nonlinear()) sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && (ends_before(ending.x) || comes_early(ending))) return true;
