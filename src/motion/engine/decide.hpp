@@ -13,6 +13,15 @@
 
 namespace dinal::motion::engine {
 
+/// An event that a decision reports.
+struct Told {
+    model::Event event;
+    bool holds_again = false;  ///< a stick of a joint that was let go: with its slip at this instant it is no event
+    model::Motion slid = model::Motion::stuck;  ///< of a slip: the way in which it slid before it stuck; stuck: none
+    model::Motion way = model::Motion::stuck;   ///< of a slip: the way in which it slides now
+    double off = 0, size = 0;                   ///< of a slip: the change of its pull since then, and of its torques
+};
+
 /// Room for decisions, so that each need not allocate it.
 struct DecisionRoom {
     /// The knowledge of a decision about a joint.
@@ -25,9 +34,10 @@ struct DecisionRoom {
         double pull = 0;  ///< that let it go
     };
     std::vector<Asked> asked;
-    Mode entered;       ///< when the decision began
-    TorqueSizes sizes;  ///< when the decision began
+    std::vector<Slipping> entered;  ///< friction when the decision began
+    TorqueSizes sizes;              ///< when the decision began
     Balance balance;
+    std::vector<Told> told;
 };
 
 /// The parts of a run that a decision evaluates. None of them changes the motion.
@@ -51,20 +61,11 @@ struct Cause {
     bool told = true;  ///< changes are events, as they are not at the start
 };
 
-/// An event that a decision reports.
-struct Told {
-    model::Event event;
-    bool holds_again = false;  ///< a stick of a joint that was let go: with its slip at this instant it is no event
-    model::Motion slid = model::Motion::stuck;  ///< of a slip: the way in which it slid before it stuck; stuck: none
-    model::Motion way = model::Motion::stuck;   ///< of a slip: the way in which it slides now
-    double off = 0, size = 0;                   ///< of a slip: the change of its pull since then, and of its torques
-};
-
 struct Decision {
     bool good = true;  ///< all that was evaluated is finite
     Now now;           ///< the modes and velocities from now on
     Contacts contacts;
-    std::vector<Told> told = {};
+    std::vector<Told> told;
 };
 
 /// Decides for all joints at slip 0 at once: what can hold holds; of those that can not, the one that is farthest

@@ -146,7 +146,8 @@ private:
     TorqueSizes sizes_;
     struct {
         std::vector<double> departing;
-        Mode before;  ///< the decision
+        std::vector<int> leant;  ///< before the decision
+        std::vector<Slipping> slid;
         struct {
             std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
         } standing;

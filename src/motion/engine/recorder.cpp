@@ -355,7 +355,8 @@ void Recorder::add_friction(const Now& now, const Segment& segment, std::size_t 
     if (acting.holds) {
         acting.friction = segment.holding[joint];
     } else if (mechanics_.is_native(joint) && now.rubs(joint) && now.mode.leans[joint] == 0) {
-        const Nodes slips = mechanics_.slips(joint, segment.y, segment.belts[joint]);
+        const bool by_speed = problem_.system.joints[joint].friction.law.depends_on_speed();
+        const Nodes slips = by_speed ? mechanics_.slips(joint, segment.y, segment.belts[joint]) : Nodes{};
         mechanics_.add_native_friction(joint, now.mode, slips, 0, node_count, acting.friction);
         for (double& torque : acting.friction) torque = -torque;
     } else if (now.rubs(joint) || mechanics_.bristle(joint) != nullptr) {
