@@ -158,11 +158,8 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     return true;
 }
 
-/// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the motion
-/// are asked at `departing` where that is given, else at the motion of the segment.
-template <class First, class End>
-bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First first, End end,
-                         const std::vector<double>* departing) {
+bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
+                    const std::vector<double>* departing) {
     bool good = true;
     bool placed = false;
     const auto each_node = [&](auto&& at_node) {
@@ -236,11 +233,6 @@ bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First
     }
     return good;
 }
-
-template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::size_t, std::size_t,
-                                  const std::vector<double>*);
-template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::integral_constant<std::size_t, 0>,
-                                  std::integral_constant<std::size_t, node_count>, const std::vector<double>*);
 
 double Flow::size_at(std::size_t joint) const {
     double size = 0;
@@ -324,10 +316,10 @@ double of_others(const std::vector<double>& by_others, std::size_t k) {
 /// Nothing where there is no noise.
 std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
+    const std::vector<double>& noise = noise_.floor().noise;
+    if (std::all_of(noise.begin(), noise.end(), [](double x) { return x == 0; })) return {};
     const Eigen::MatrixXd* const slopes = newton_.slopes(frame);
-    if (slopes == nullptr ||
-        std::all_of(noise_.floor().noise.begin(), noise_.floor().noise.end(), [](double x) { return x == 0; }))
-        return {};
+    if (slopes == nullptr) return {};
     std::vector<double> rough(count);
     Eigen::VectorXd off(static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
@@ -352,7 +344,7 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
         fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost);
     }
     const std::vector<double> by_others = passed_on(s, frame);
-    judge_bodies(s, frame, by_others);
+    judge_bodies(s, mode, frame, by_others);
     judge_joints(s, mode);
     judge_states(s, frame, by_others);
 }
@@ -372,7 +364,7 @@ double Flow::lost_of_loads(const Segment& s, std::size_t body) const {
     return sum;
 }
 
-void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<double>& by_others) {
+void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& by_others) {
     const double h = s.h;
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_.all[i];
@@ -389,7 +381,7 @@ void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<
             allowed += per_torque * noise_.of_torques() + others;
             note(s, series, h, allowed);
             allowed_[i] = allowed / h;
-        } else {
+        } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise they are those of the joint, which are judged
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include "motion/engine/mechanics.hpp"
@@ -82,16 +81,10 @@ protected:
     /// The motion at the nodes is the integral of the rates there.
     [[nodiscard]] virtual bool follows_rates() const = 0;
 
-    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                  const std::vector<double>* departing) {
-        return evaluate_part(segment, mode, frame, first, end, departing);
-    }
-    /// The same at all nodes, at the motion of the segment.
-    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame) {
-        constexpr std::integral_constant<std::size_t, 0> first;
-        constexpr std::integral_constant<std::size_t, node_count> end;
-        return evaluate_part(segment, mode, frame, first, end, nullptr);
-    }
+    /// Torques and rates from the node `first` to before `end`; new accelerations of the groups. Functions of the
+    /// motion are asked at `departing` where that is given, else at the motion of the segment.
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first = 0,
+                  std::size_t end = node_count, const std::vector<double>* departing = nullptr);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     Attempt look_between(Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes(const Segment& segment);
@@ -122,15 +115,13 @@ protected:
     } room_;
 
 private:
-    template <class First, class End>
-    bool evaluate_part(Segment& segment, const Mode& mode, const Frame& frame, First first, End end,
-                       const std::vector<double>* departing);
     void make_room(Segment& segment) const;
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
     [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
-    void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
+    void judge_bodies(const Segment& segment, const Mode& mode, const Frame& frame,
+                      const std::vector<double>& by_others);
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
     void note(const Segment& segment, const Series& series, double scale, double allowed);
