@@ -103,12 +103,8 @@ const IntegrationModes& integration_modes() {
 }
 
 /// A matrix of `inner` rows, column after column, times a vector.
-void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
-    using Column = Eigen::Matrix<double, inner, 1>;
-    Column sums = Column::Zero();
-    for (std::size_t j = 0; j < columns; ++j) sums += vector[j] * Eigen::Map<const Column>(matrix + j * inner);
-    Eigen::Map<Column> result(product);
-    result = sums;
+DINAL_WIDE void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
+    cheb::add_rows<inner / 4>(matrix, vector, columns, product);
 }
 
 /// The inverse of a matrix, by elimination with the greatest pivots. A general decomposition takes six times as long.
