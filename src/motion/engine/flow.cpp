@@ -67,6 +67,7 @@ Flow::Attempt Flow::look_between(Segment& s, const Mode& mode, const Frame& fram
     if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
     if (unresolved_ > 1) return Attempt::shorten;
     noise_.pass(s);
+    for (const Signal& load : mechanics_.loads()) load.keep(s, tolerance_);
     return Attempt::resolved;
 }
 
@@ -502,11 +503,17 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
     for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
+    // The last stretch was looked into, and its series serves until then.
+    double looked = seen || mechanics_.nonlinear() ? -model::never : model::never;
+    for (const Signal& load : mechanics_.loads()) {
+        if (load.asks_in_time()) looked = std::min(looked, load.kept_until());
+    }
     if (seen) places.push_back(s.start.until(proofs_.seen()) / s.h - 1);
     for (const std::size_t j : looked_into) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
     add_turns(s, places);
     for (const double x : places) {
         const double t = s.time(x);
+        if (t < looked) continue;
         mechanics_.loads_of_time(t, Side::at, room_.load);
         for (std::size_t i = 0; i < loads.size(); ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;
