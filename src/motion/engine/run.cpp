@@ -79,7 +79,7 @@ Engine::Engine(const Request& problem, Run& result)
     }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
-    plain_steps_.emplace(problem, mechanics_);
+    if (problem.step > 0) plain_steps_.emplace(problem, mechanics_);
 }
 
 // ---- the loop
@@ -172,7 +172,8 @@ bool Engine::advance() {
 
 /// Steps on which nothing happens need no segment.
 bool Engine::take_plain_steps() {
-    if (pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides()) return false;
+    if (!plain_steps_ || pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides())
+        return false;
     double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
     for (const model::WantedEvent& event : problem_.drive.events) {
         breaks = std::min(breaks, event.when->next_break(now_.t.hi));
