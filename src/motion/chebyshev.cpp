@@ -79,7 +79,7 @@ DINAL_WIDE Series<points> fit(const Samples& f) {
     return c;
 }
 
-Samples at_nodes(const Series<points>& c) {
+DINAL_WIDE Samples at_nodes(const Series<points>& c) {
     // All nodes side by side, so that the compiler vectorises.
     std::array<double, half + 1> even{}, odd{};
     for (std::size_t i = 0; i < half; ++i) {

@@ -109,7 +109,7 @@ DINAL_WIDE void multiply(const double* matrix, const double* vector, std::size_t
 
 /// The inverse of a matrix, by elimination with the greatest pivots. A general decomposition takes six times as long.
 using Inner = Eigen::Matrix<double, inner, inner>;
-Inner inverse_of(Inner A) {
+DINAL_WIDE Inner inverse_of(Inner A) {
     std::array<std::size_t, inner> pivots{};
     const auto column = [&A](std::size_t k) { return A.data() + k * inner; };
     for (std::size_t k = 0; k < inner; ++k) {
