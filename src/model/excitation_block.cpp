@@ -171,6 +171,9 @@ std::size_t Excitation::fill(std::span<const double> times, std::span<double> ou
         }
     }
     const auto filled = out.first(n);
+    double nothing = 0;
+    for (const double value : filled) nothing += 0 * value;
+    if (nothing == 0) return n;
     const auto bad = std::find_if(filled.begin(), filled.end(), [](double x) { return !std::isfinite(x); });
     return static_cast<std::size_t>(bad - filled.begin());
 }

@@ -40,10 +40,11 @@ constexpr Matrix<columns, half + 1> turned(const Matrix<half + 1, columns>& term
 constexpr auto even_at = turned(even_terms);
 constexpr auto odd_at = turned(odd_terms);
 
-/// Row j: the weights of f(x_j) + f(-x_j), or of the difference if odd, in the coefficients of that parity.
-template <std::size_t columns>
-constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
-    Matrix<half + 1, columns> m{};
+/// Row j: the weights of f(x_j) + f(-x_j), or of the difference if odd, in the coefficients of that parity, in `wide`
+/// columns.
+template <std::size_t wide, std::size_t columns>
+constexpr Matrix<half + 1, wide> weights(const Matrix<half + 1, columns>& terms, std::size_t parity) {
+    Matrix<half + 1, wide> m{};
     for (std::size_t j = 0; j <= half; ++j) {
         for (std::size_t i = 0; i < columns; ++i) {
             const std::size_t k = 2 * i + parity;
@@ -54,24 +55,23 @@ constexpr Matrix<half + 1, columns> weights(const Matrix<half + 1, columns>& ter
     }
     return m;
 }
-constexpr auto even_weights = weights(even_terms, 0);
-constexpr auto odd_weights = weights(odd_terms, 1);
+constexpr auto even_weights = weights<half + 4>(even_terms, 0);
+constexpr auto odd_weights = weights<half>(odd_terms, 1);
 
 }  // namespace
 
-Series<points> fit(const Samples& f) {
+DINAL_WIDE Series<points> fit(const Samples& f) {
     Series<points> c{};
     if (std::all_of(f.begin(), f.end(), [&](double x) { return x == f[0]; })) {
         c[0] = f[0];
         return c;
     }
-    std::array<double, half + 1> even{};
-    std::array<double, half> odd{};
-    for (std::size_t j = 0; j <= half; ++j) {
-        const double sum = f[j] + f[degree - j], difference = f[j] - f[degree - j];
-        for (std::size_t i = 0; i <= half; ++i) even[i] += even_weights[j][i] * sum;
-        for (std::size_t i = 0; i < half; ++i) odd[i] += odd_weights[j][i] * difference;
-    }
+    std::array<double, half + 1> sums, differences;
+    for (std::size_t j = 0; j <= half; ++j) sums[j] = f[j] + f[degree - j], differences[j] = f[j] - f[degree - j];
+    std::array<double, half + 4> even;
+    std::array<double, half> odd;
+    add_rows<half / 4 + 1>(even_weights[0].data(), sums.data(), half + 1, even.data());
+    add_rows<half / 4>(odd_weights[0].data(), differences.data(), half + 1, odd.data());
     for (std::size_t i = 0; i < half; ++i) {
         c[2 * i] = even[i];
         c[2 * i + 1] = odd[i];
@@ -80,7 +80,7 @@ Series<points> fit(const Samples& f) {
     return c;
 }
 
-Samples at_nodes(const Series<points>& c) {
+DINAL_WIDE Samples at_nodes(const Series<points>& c) {
     // Loops over all nodes innermost, so that the compiler vectorises.
     std::array<double, half + 1> even{}, odd{};
     for (std::size_t i = 0; i < half; ++i) {

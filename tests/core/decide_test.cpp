@@ -1,5 +1,6 @@
 // The decision of contacts at slip 0, by itself: the limits of friction, one joint after the other, and no memory.
 #include "motion/engine/decide.hpp"
+#include "motion/engine/collocation.hpp"
 
 #include <cmath>
 #include <string>

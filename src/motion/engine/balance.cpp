@@ -46,6 +46,16 @@ bool Balances::on_stretch(const Segment& segment, double x, const Moment& at, co
     return find(at, mode, frame, rate, known, result);
 }
 
+namespace {
+
+/// Without a call where the size stays.
+void clear(std::vector<double>& values, std::size_t size) {
+    if (values.size() != size) values.resize(size);
+    std::fill(values.begin(), values.end(), 0.0);
+}
+
+}  // namespace
+
 template <class Rate, class Known>
 bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, const Rate& rate, const Known& known,
                     Balance& result) {
@@ -57,12 +67,12 @@ bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, cons
     mechanics_.loads_of_time(at.t, at.side, result.loads, known);
     mechanics_.torques(at, mode, belts_, result.loads, result.torques);
     if (mechanics_.has_belts()) frame.offsets(rates_, mode, offsets_);
-    of_group_.assign(frame.groups(), 0), lacking_.resize(n);
+    clear(of_group_, frame.groups()), clear(lacking_, n);
     for (std::size_t i = 0; i < n; ++i) {
         const double own = mechanics_.system().bodies[i].inertia * offsets_[i];
         for (const auto& [group, by] : frame.bodies[i]) of_group_[group] += by * (result.torques[i] - own);
     }
-    result.accelerations.resize(n);
+    clear(result.accelerations, n);
     bool good = true;
     for (std::size_t i = 0; i < n; ++i) {
         result.accelerations[i] = offsets_[i];
@@ -72,7 +82,7 @@ bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, cons
         lacking_[i] = mechanics_.system().bodies[i].inertia * result.accelerations[i] - result.torques[i];
         good = good && std::isfinite(lacking_[i]);
     }
-    result.holding.assign(joints, 0);
+    clear(result.holding, joints);
     frame.multipliers(lacking_, result.holding);
     return good;
 }

@@ -97,15 +97,13 @@ void Collocation::place(Segment& s, const Frame& frame) {
             integrate(velocity, s.h, way);
         }
         for (std::size_t b = i; b < n_; ++b) {
-            if (frame.bodies[b] != shape) continue;
+            if (b > i && frame.bodies[b] != shape) continue;
             placed_[b] = 1;
-            Nodes moved = way, moves = velocity;
-            add(moved, offsets_.ways[b], 1), add(moves, offsets_.velocities[b], 1);
-            const double from = s.y[b][0];
-            std::copy(moves.begin() + 1, moves.end(), s.y[n_ + b].begin() + 1);
-            std::copy(moved.begin() + 1, moved.end(), s.moved[b].begin() + 1);
-            for (double& place : moved) place += from;
-            std::copy(moved.begin() + 1, moved.end(), s.y[b].begin() + 1);
+            Nodes moves = velocity, moved = way, angles{};
+            if (mechanics_.has_belts()) add(moves, offsets_.velocities[b], 1), add(moved, offsets_.ways[b], 1);
+            moves[0] = s.y[n_ + b][0], moved[0] = 0;
+            for (std::size_t j = 0; j < node_count; ++j) angles[j] = s.y[b][0] + moved[j];
+            s.y[b] = angles, s.y[n_ + b] = moves, s.moved[b] = moved;
         }
     }
     for (std::size_t k = 0; k < m_; ++k) {
@@ -146,19 +144,23 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
 /// evaluated at all nodes.
 Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Frame& frame) {
     for (Nodes& a : unknown_) a.fill(0);
-    guess(s, frame);
-    if (!evaluate(s, mode, frame)) return Attempt::failed;
+    if (!follow_native(s, mode, frame)) {
+        guess(s, frame);
+        if (!evaluate(s, mode, frame)) return Attempt::failed;
+    }
     const std::size_t groups = frame.groups();
+    for (std::size_t g = 0; g < groups; ++g) unknown_[g][0] = found_[g][0];
     if (groups == 0) return Attempt::resolved;
     const Eigen::MatrixXd& slopes = *newton_.slopes(frame);
     for (std::size_t g = 0; g < groups; ++g) {
-        Nodes rest = found_[g];
-        for (double& a : rest) a -= found_[g][0];
+        Nodes& rest = found_[g];
+        const double begin = rest[0];
+        for (double& a : rest) a -= begin;
         for (std::size_t c = 0; c < groups; ++c) {
             const double of_angle = slopes(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(c));
             const double of_velocity = slopes(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(groups + c));
             if (of_angle == 0 && of_velocity == 0) continue;
-            const double first = of_velocity * found_[c][0], second = of_angle * found_[c][0] / 2;
+            const double first = of_velocity * unknown_[c][0], second = of_angle * unknown_[c][0] / 2;
             for (std::size_t j = 0; j < node_count; ++j) {
                 const double since = s.h * (1 + cheb::nodes[j]);
                 rest[j] += since * (first + since * second);
@@ -168,8 +170,9 @@ Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Fram
     }
     newton_.solve(s.h, frame, residual_, step_);
     for (std::size_t g = 0; g < groups; ++g) {
-        unknown_[g][0] = found_[g][0];
-        for (std::size_t j = 1; j < node_count; ++j) unknown_[g][j] = found_[g][0] + step_.data()[g * inner + j - 1];
+        for (std::size_t j = 1; j < node_count; ++j) {
+            unknown_[g][j] = unknown_[g][0] + step_.data()[g * inner + j - 1];
+        }
     }
     place(s, frame);
     double moves = 0, most = 0;
@@ -179,10 +182,37 @@ Flow::Attempt Collocation::find_at_once(Segment& s, const Mode& mode, const Fram
     const bool holds = !frame.edges.empty() || !frame.closing.empty();
     if (holds) return evaluate(s, mode, frame) ? Attempt::resolved : Attempt::failed;
     for (std::size_t i = 0; i < n_; ++i) {
-        s.torques[i] = {};
-        for (const auto& [group, by] : frame.bodies[i]) add(s.torques[i], unknown_[group], by * frame.inertia[group]);
+        Nodes torque{};
+        for (const auto& [group, by] : frame.bodies[i]) add(torque, unknown_[group], by * frame.inertia[group]);
+        s.torques[i] = torque;
     }
     return Attempt::resolved;
+}
+
+/// Evaluates the torques of a motion without acceleration if all are native: those at the first node, changed by the
+/// loads and the displacement. Returns false if other torques act.
+bool Collocation::follow_native(Segment& s, const Mode& mode, const Frame& frame) {
+    if (!mechanics_.all_linear() || mechanics_.has_belts()) return false;
+    const std::size_t joints = mechanics_.joints();
+    room_.load.resize(joints), room_.belt.resize(joints);
+    for (std::size_t j = 0; j < joints; ++j) room_.load[j] = s.loads[j][0];
+    const Moment begin = s.moment(0, room_.points[0]);
+    mechanics_.torques(begin, mode, room_.belt, room_.load, room_.torque);
+    for (std::size_t i = 0; i < n_; ++i) s.torques[i].fill(room_.torque[i]);
+    for (std::size_t j = 0; j < joints; ++j) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        const double low = joint.stiffness * joint.sum(s.low);
+        const double rate = joint.stiffness * mechanics_.velocity(j, begin.y) * s.h;
+        Nodes change = s.loads[j];
+        for (double& each : change) each -= room_.load[j] + low;
+        for (std::size_t node = 0; node < node_count; ++node) change[node] -= rate * (1 + cheb::nodes[node]);
+        for (const auto& [body, by] : joint.of) add(s.torques[body], change, by);
+    }
+    for (Nodes& found : found_) found.fill(0);
+    for (std::size_t i = 0; i < n_; ++i) {
+        for (const auto& [group, by] : frame.bodies[i]) add(found_[group], s.torques[i], by / frame.inertia[group]);
+    }
+    return std::all_of(room_.torque.begin(), room_.torque.end(), [](double torque) { return std::isfinite(torque); });
 }
 
 /// Sets all accelerations and rates to those of the first node.
@@ -200,7 +230,7 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
     const bool from_before = slopes == Slopes::known && newton_.known();
     double before = std::numeric_limits<double>::infinity();
     for (int i = 0; i < most_iterations; ++i) {
-        if (!evaluate(s, mode, frame, 1, node_count, nullptr)) {
+        if (!evaluate(s, mode, frame, 1)) {
             newton_.forget();  // the slopes may belong to a distant state
             return Attempt::failed;
         }

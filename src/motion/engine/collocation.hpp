@@ -26,6 +26,7 @@ private:
     enum class Slopes { known, here, none };
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, Slopes slopes);
     Attempt find_at_once(Segment& segment, const Mode& mode, const Frame& frame);
+    bool follow_native(Segment& segment, const Mode& mode, const Frame& frame);
     void begin_at_first_node(Segment& segment, const Frame& frame);
     struct Residual {
         double left = 0;        ///< greatest relative residual of the equations

@@ -79,7 +79,11 @@ private:
     [[nodiscard]] double size(std::size_t joint) const { return by_.room.sizes.on(joint_at(joint)); }
     [[nodiscard]] double belt(std::size_t joint) const { return mechanics_.belt(joint, now().t.hi, now().side()); }
     void slide(std::size_t joint, Motion way, bool leaving) { memory().slide(mechanics_, now(), joint, way, leaving); }
-    void project(const Frame& frame) { by_.projection.apply(now(), frame, now().side()); }
+    /// Nothing else moves velocities.
+    void project(const Frame& frame) {
+        if (projected_ != &frame) by_.projection.apply(now(), frame, now().side());
+        projected_ = &frame;
+    }
     void tell(EventKind kind, std::size_t joint) {
         made_.told.push_back({.event = event_at(mechanics_, now(), kind, joint)});
     }
@@ -91,14 +95,15 @@ private:
     Decision& made_;
     std::vector<Asked>& asked_;
     Balance& found_;
-    std::size_t full_ = 0;        ///< joint of a loop that has reached its limit
-    bool found_at_stop_ = false;  ///< whether found_ is the balance at the stop of the only joint, which sticks
-    double between_ = 0;          ///< rounding of the released joint's torque between two doubles of the time
+    const Frame* projected_ = nullptr;  ///< the frame to which velocities were projected last
+    std::size_t full_ = 0;              ///< joint of a loop that has reached its limit
+    bool found_at_stop_ = false;        ///< whether found_ is the balance at the stop of the only joint, which sticks
+    double between_ = 0;                ///< rounding of the released joint's torque between two doubles of the time
 };
 
 bool Decider::decide() {
     ask();
-    by_.room.entered = mode();
+    by_.room.entered = mode().friction;
     found_.holding.assign(joints(), 0);
     const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
     const Frame& all_hold = frame();
@@ -220,7 +225,8 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
             continue;
         }
         if (!(beyond > rounded)) continue;
-        const double part = beyond / (mechanics_.size_of(j, now().here()) + std::numeric_limits<double>::min());
+        const double size = joints() > 1 ? mechanics_.size_of(j, now().here()) : 1;
+        const double part = beyond / (size + std::numeric_limits<double>::min());
         if (!worst || part > most_beyond) worst = {j, towards}, most_beyond = part;
     }
     return worst;
@@ -452,7 +458,8 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
 /// Decides all joints at slip 0 at once, if deciding one after another cycles. Sliding joints then have the sliding
 /// instead of the holding torque, and the problem is solved again. The limit of a released joint is lowered slightly.
 bool Decider::decide_together() {
-    mode() = by_.room.entered;
+    mode().friction = by_.room.entered;
+    for (std::size_t j = 0; j < joints(); ++j) mode().leans[j] = asked_[j].leant;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < joints(); ++j) {
         if (asked_[j].asked || mode().keeps_place(j)) held.push_back(j);
@@ -545,7 +552,8 @@ bool Decider::share_loops() {
 }  // namespace
 
 Decision decide(const Evaluation& by, Now&& now, Contacts&& contacts, const Cause& cause) {
-    Decision made{.now = std::move(now), .contacts = std::move(contacts)};
+    Decision made{.now = std::move(now), .contacts = std::move(contacts), .told = std::move(by.room.told)};
+    made.told.clear();
     made.good = Decider(by, cause, made).decide() && made.good;
     return made;
 }

@@ -13,6 +13,17 @@
 
 namespace dinal::motion::engine {
 
+/// An event reported by a decision.
+struct Told {
+    model::Event event;
+    /// whether a released joint sticks again, which cancels its slip event of the same instant
+    bool holds_again = false;
+    model::Motion slid = model::Motion::stuck;  ///< for a slip: direction of sliding before the stick; stuck: none
+    model::Motion way = model::Motion::stuck;   ///< for a slip: its direction
+    /// for a slip: change of the pull since the stick, and magnitude of the torques
+    double off = 0, size = 0;
+};
+
 /// Storage for decisions, to avoid repeated allocation.
 struct DecisionRoom {
     /// What a decision knows about one joint.
@@ -25,9 +36,10 @@ struct DecisionRoom {
         double pull = 0;  ///< the pull at its release
     };
     std::vector<Asked> asked;
-    Mode entered;       ///< mode at the start of the decision
-    TorqueSizes sizes;  ///< torques at the start of the decision
+    std::vector<Slipping> entered;  ///< friction at the start of the decision
+    TorqueSizes sizes;              ///< torques at the start of the decision
     Balance balance;
+    std::vector<Told> told;
 };
 
 /// The parts of a run that a decision uses. None of them changes the motion.
@@ -51,22 +63,11 @@ struct Cause {
     bool told = true;  ///< whether changes are reported as events; false at the start
 };
 
-/// An event reported by a decision.
-struct Told {
-    model::Event event;
-    /// whether a released joint sticks again, which cancels its slip event of the same instant
-    bool holds_again = false;
-    model::Motion slid = model::Motion::stuck;  ///< for a slip: direction of sliding before the stick; stuck: none
-    model::Motion way = model::Motion::stuck;   ///< for a slip: its direction
-    /// for a slip: change of the pull since the stick, and magnitude of the torques
-    double off = 0, size = 0;
-};
-
 struct Decision {
     bool good = true;  ///< whether all evaluated values are finite
     Now now;           ///< the new modes and velocities
     Contacts contacts;
-    std::vector<Told> told = {};
+    std::vector<Told> told;
 };
 
 /// Decides about all joints at slip 0. All joints start as sticking; the one that exceeds its limit the most is

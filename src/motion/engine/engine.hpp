@@ -147,7 +147,8 @@ private:
     TorqueSizes sizes_;
     struct {
         std::vector<double> departing;
-        Mode before;  ///< mode before a decision
+        std::vector<int> leant;  ///< before the decision
+        std::vector<Slipping> slid;
         struct {
             std::vector<double> greatest_pull, lacking, held, belts, loads, torques;
         } standing;

@@ -80,12 +80,13 @@ bool Engine::come_to_a_stop(std::size_t j) {
 /// Handles a joint that has reached its limit.
 bool Engine::release(const Ending& ending) {
     const std::size_t j = ending.which;
-    Mode& before = scratch_.before;
-    before = now_.mode;
+    std::vector<int>& leant = scratch_.leant;
+    std::vector<Slipping>& slid = scratch_.slid;
+    leant = now_.mode.leans, slid = now_.mode.friction;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
-    bool same = now_.mode.leans == before.leans;
+    bool same = now_.mode.leans == leant;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
-        const Slipping &is = now_.mode.friction[i], &was = before.friction[i];
+        const Slipping &is = now_.mode.friction[i], &was = slid[i];
         same = is.way == was.way && is.riding == was.riding && is.creeps == was.creeps;
     }
     // A joint that only touched its limit must exceed it clearly next time.
@@ -128,6 +129,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);
     for (const Told& each : made.told) recorder_->tell(each);
+    room_.told = std::move(made.told);
     return made.good || fail(Outcome::excitation_not_finite);
 }
 

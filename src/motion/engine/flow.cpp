@@ -29,7 +29,7 @@ Flow::Flow(const Mechanics& mechanics, double tolerance, double longest)
       newton_(mechanics),
       allowed_(n_),
       proofs_(mechanics) {
-    fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
+    sizes_.all.resize(n_), fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
     for (auto* of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
     mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
 }
@@ -38,7 +38,7 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
                           const std::vector<double>& departing) {
     unresolved_ = std::numeric_limits<double>::infinity();
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
-    find_sizes_at_start(s, begin);
+    sizes_.at_start.find(mechanics_, s, {s.times[0], s.side(0), begin});
     const Attempt attempt = find(s, mode, frame, departing);
     const std::size_t groups = frame.groups();
     if (attempt != Attempt::resolved) {
@@ -67,6 +67,7 @@ Flow::Attempt Flow::look_between(Segment& s, const Mode& mode, const Frame& fram
     if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
     if (unresolved_ > 1) return Attempt::shorten;
     noise_.pass(s);
+    for (const Signal& load : mechanics_.loads()) load.keep(s, tolerance_);
     return Attempt::resolved;
 }
 
@@ -111,8 +112,10 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     }
     for (std::size_t k = 0; k < s.y.size(); ++k) s.y[k].fill(begin[k]);
     mechanics_.sample_loads(s, s.loads);
+    s.driven = s.loads;
     std::size_t good = node_count;
     for (const Nodes& load : s.loads) {
+        if (cheb::sum_of<node_count>([&](std::size_t j) { return 0 * load[j]; }) == 0) continue;
         const auto* const bad = std::find_if(load.begin(), load.end(), [](double M) { return !std::isfinite(M); });
         good = std::min(good, static_cast<std::size_t>(bad - load.begin()));
     }
@@ -156,12 +159,8 @@ bool Flow::sample(Segment& s, const Mode& mode, const Frame& frame, const std::v
     return true;
 }
 
-/// Computes torques and rates at the nodes from `first` up to but excluding `end`, and the accelerations of the groups.
-/// Functions of the motion are evaluated at the state `departing` at the first node, if given, otherwise at the motion
-/// of the segment.
-template <class First, class End>
-bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First first, End end,
-                         const std::vector<double>* departing) {
+bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
+                    const std::vector<double>* departing) {
     bool good = true;
     bool placed = false;
     const auto each_node = [&](auto&& at_node) {
@@ -236,11 +235,6 @@ bool Flow::evaluate_part(Segment& s, const Mode& mode, const Frame& frame, First
     return good;
 }
 
-template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::size_t, std::size_t,
-                                  const std::vector<double>*);
-template bool Flow::evaluate_part(Segment&, const Mode&, const Frame&, std::integral_constant<std::size_t, 0>,
-                                  std::integral_constant<std::size_t, node_count>, const std::vector<double>*);
-
 double Flow::size_at(std::size_t joint) const {
     double size = 0;
     for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
@@ -250,17 +244,7 @@ double Flow::size_at(std::size_t joint) const {
 }
 
 void Flow::find_sizes(const Segment& s) {
-    for (std::size_t i = 0; i < n_; ++i) sizes_.all[i] = sizes_.at_start[i] + greatest(s.torques[i]);
-}
-
-void Flow::find_sizes_at_start(const Segment& s, const std::vector<double>& begin) {
-    sizes_.at_start.resize(n_), sizes_.all.resize(n_);
-    for (std::size_t i = 0; i < n_; ++i) sizes_.at_start[i] = greatest(s.loads[i]);
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        const model::Joint& joint = mechanics_.system().joints[j];
-        const double size = mechanics_.size_of(j, {s.times[0], s.side(0), begin}) + (j < n_ ? 0 : greatest(s.loads[j]));
-        for (const auto& [body, by] : joint.of) sizes_.at_start[body] += std::fabs(by) * size;
-    }
+    for (std::size_t i = 0; i < n_; ++i) sizes_.all[i] = sizes_.at_start.on_body(i) + greatest(s.torques[i]);
 }
 
 /// Fits the series of the motion by integrating those of the accelerations, which is cheaper than a fit of velocities
@@ -332,10 +316,10 @@ double of_others(const std::vector<double>& by_others, std::size_t k) {
 /// noise.
 std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
+    const std::vector<double>& noise = noise_.floor().noise;
+    if (std::all_of(noise.begin(), noise.end(), [](double x) { return x == 0; })) return {};
     const Eigen::MatrixXd* const slopes = newton_.slopes(frame);
-    if (slopes == nullptr ||
-        std::all_of(noise_.floor().noise.begin(), noise_.floor().noise.end(), [](double x) { return x == 0; }))
-        return {};
+    if (slopes == nullptr) return {};
     std::vector<double> rough(count);
     Eigen::VectorXd off(static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
@@ -360,7 +344,7 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
         fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost);
     }
     const std::vector<double> by_others = passed_on(s, frame);
-    judge_bodies(s, frame, by_others);
+    judge_bodies(s, mode, frame, by_others);
     judge_joints(s, mode);
     judge_states(s, frame, by_others);
 }
@@ -380,7 +364,7 @@ double Flow::lost_of_loads(const Segment& s, std::size_t body) const {
     return sum;
 }
 
-void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<double>& by_others) {
+void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& by_others) {
     const double h = s.h;
     for (std::size_t i = 0; i < n_; ++i) {
         const double torques = sizes_.all[i];
@@ -397,7 +381,7 @@ void Flow::judge_bodies(const Segment& s, const Frame& frame, const std::vector<
             allowed += per_torque * noise_.of_torques() + others;
             note(s, series, h, allowed);
             allowed_[i] = allowed / h;
-        } else {
+        } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise they are those of the joint, which are judged
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
@@ -519,11 +503,17 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
     for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
+    // The last stretch was looked into, and its series serves until then.
+    double looked = seen || mechanics_.nonlinear() ? -model::never : model::never;
+    for (const Signal& load : mechanics_.loads()) {
+        if (load.asks_in_time()) looked = std::min(looked, load.kept_until());
+    }
     if (seen) places.push_back(s.start.until(proofs_.seen()) / s.h - 1);
     for (const std::size_t j : looked_into) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
     add_turns(s, places);
     for (const double x : places) {
         const double t = s.time(x);
+        if (t < looked) continue;
         mechanics_.loads_of_time(t, Side::at, room_.load);
         for (std::size_t i = 0; i < loads.size(); ++i) {
             if (!mechanics_.loads()[i].asks_in_time()) continue;

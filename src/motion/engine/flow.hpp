@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include "motion/engine/mechanics.hpp"
@@ -14,6 +13,7 @@
 #include "motion/engine/nodes.hpp"
 #include "motion/engine/noise.hpp"
 #include "motion/engine/segment.hpp"
+#include "motion/engine/torque_sizes.hpp"
 #include "motion/engine/unseen.hpp"
 #include "motion/method.hpp"
 
@@ -53,6 +53,8 @@ public:
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
     }
+    /// Returns the magnitudes of torques at the start of the last stretch, without loads that depend on the motion.
+    [[nodiscard]] const TorqueSizes& sizes_at_start() const { return sizes_.at_start; }
     /// The longest time between two samples of a function of time in a stretch.
     [[nodiscard]] virtual double gap(const Segment& segment) const;
     /// The time of a break of a function of time in the last stretch; empty if there is none.
@@ -80,16 +82,11 @@ protected:
     /// Returns whether the motion at the nodes is the integral of the rates there.
     [[nodiscard]] virtual bool follows_rates() const = 0;
 
-    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first, std::size_t end,
-                  const std::vector<double>* departing) {
-        return evaluate_part(segment, mode, frame, first, end, departing);
-    }
-    /// Evaluates all nodes at the motion of the segment.
-    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame) {
-        constexpr std::integral_constant<std::size_t, 0> first;
-        constexpr std::integral_constant<std::size_t, node_count> end;
-        return evaluate_part(segment, mode, frame, first, end, nullptr);
-    }
+    /// Computes torques and rates at the nodes from `first` up to but excluding `end`, and the accelerations of the
+    /// groups. Functions of the motion are evaluated at the state `departing` at the first node, if given, otherwise at
+    /// the motion of the segment.
+    bool evaluate(Segment& segment, const Mode& mode, const Frame& frame, std::size_t first = 0,
+                  std::size_t end = node_count, const std::vector<double>* departing = nullptr);
     void judge(const Segment& segment, const Mode& mode, const Frame& frame);
     Attempt look_between(Segment& segment, const Mode& mode, const Frame& frame);
     void find_sizes(const Segment& segment);
@@ -110,19 +107,24 @@ protected:
     /// accelerations of the groups and rates of the states, and their recomputed values
     std::vector<Nodes> unknown_, found_;
     struct {
-        std::vector<double> all, at_start;
+        std::vector<double> all;
+        TorqueSizes at_start;
     } sizes_;  ///< magnitude of the torques on each body
+    /// Storage that is reused, to avoid allocation in each stretch.
+    struct {
+        std::vector<double> torque, load, belt, rate;
+        std::vector<Nodes> lacking;
+        std::array<std::vector<double>, node_count> points;  ///< the state y at each node
+    } room_;
 
 private:
-    template <class First, class End>
-    bool evaluate_part(Segment& segment, const Mode& mode, const Frame& frame, First first, End end,
-                       const std::vector<double>* departing);
     void make_room(Segment& segment) const;
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
     [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
-    void judge_bodies(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
+    void judge_bodies(const Segment& segment, const Mode& mode, const Frame& frame,
+                      const std::vector<double>& by_others);
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
     void note(const Segment& segment, const Series& series, double scale, double allowed);
@@ -130,8 +132,7 @@ private:
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool hides_nothing(Segment& segment, const Mode& mode, double until);
     bool agrees_between(const Segment& segment, const Mode& mode, const Frame& frame);
-    void find_sizes_at_start(const Segment& segment, const std::vector<double>& begin);
-    /// Returns the magnitude of the torques on the angle of a joint.
+    /// Returns the magnitude of the torques on the angle of a joint, from those on its bodies.
     [[nodiscard]] double size_at(std::size_t joint) const;
     [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
 
@@ -139,12 +140,6 @@ private:
     double bad_time_ = 0;
     std::vector<double> allowed_;  ///< allowed error of each body's acceleration
     Proofs proofs_;
-    /// Storage that is reused, to avoid allocation in each stretch.
-    struct {
-        std::vector<double> torque, load, belt, rate;
-        std::vector<Nodes> lacking;
-        std::array<std::vector<double>, node_count> points;  ///< the state y at each node
-    } room_;
 };
 
 /// The ratio of noise at single nodes to the last coefficients.

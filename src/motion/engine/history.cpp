@@ -38,8 +38,8 @@ private:
         Integral input{}, viscous{}, dry{}, belt{}, base{}, stop{}, kept{};
     };
     [[nodiscard]] Series whole(std::size_t k) const {
-        Series series = kept_.series[k];
-        series[0] += kept_.begin[k];
+        Series series = kept_.y[k].change;
+        series[0] += kept_.y[k].begin;
         return series;
     }
     [[nodiscard]] Integrals integrals(std::size_t joint) const {
@@ -109,8 +109,7 @@ private:
 
 void History::add(Kept kept, bool for_good, double past) {
     const std::size_t bytes = sizeof(Kept) + (kept.remade != nullptr ? kept.remade->bytes() : 0) +
-                              kept.begin.size() * (sizeof(double) + sizeof(Series)) +
-                              kept.acting.size() * sizeof(Kept::Acting);
+                              kept.y.size() * sizeof(Kept::Value) + kept.acting.size() * sizeof(Kept::Acting);
     if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
     for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
     if (!for_good && !(kept.start.after(kept.length) >= past)) return;
@@ -126,9 +125,10 @@ void History::add(Kept kept, bool for_good, double past) {
     if (later - first >= worth_it) list_.erase(first, later);
 }
 
-void History::close(const Clock& end, std::vector<double> y) {
-    std::vector<Series> still(y.size());
-    list_.push_back({.start = end, .h = 1, .begin = std::move(y), .series = std::move(still)});
+void History::close(const Clock& end, const std::vector<double>& y) {
+    Kept last{.start = end, .h = 1};
+    for (const double value : y) last.y.push_back({value});
+    list_.push_back(std::move(last));
 }
 
 std::vector<double> History::at(double t, Side side) const {
@@ -140,7 +140,7 @@ std::vector<double> History::at(double t, Side side) const {
     if (after == list_.begin() || earlier) return before_ != nullptr ? before_->at(t, side) : initial_;
     const Kept& kept = *(after - 1);
     if (kept.remade != nullptr) return kept.remade->at(kept.start.until(t));
-    std::vector<double> y = kept.begin;
+    std::vector<double> y(kept.y.size());
     for (std::size_t k = 0; k < y.size(); ++k) y[k] = kept.value(k, kept.x(t));
     return y;
 }

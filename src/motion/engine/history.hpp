@@ -34,10 +34,13 @@ struct Kept {
     Clock start;
     double h = 0;       ///< half of the solved length
     double length = 0;  ///< length used, at most 2 h
-    std::vector<double> begin{};
-    std::vector<Series> series{};  ///< each angle, velocity and state, minus `begin`
-    /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial torque
-    /// of the base.
+    struct Value {
+        double begin = 0;
+        Series change{};  ///< minus `begin`
+    };
+    std::vector<Value> y{};  ///< each angle, velocity and state
+    /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial
+    /// torque of the base.
     struct Acting {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< null without base or belt
@@ -47,10 +50,10 @@ struct Kept {
         bool holds = false;                     ///< whether friction holds without slip
     };
     std::vector<Acting> acting{};
-    std::shared_ptr<const Remade> remade{};  ///< replaces the series and torques
+    std::shared_ptr<const Remade> remade{};  ///< replaces changes and torques
 
     [[nodiscard]] double value(std::size_t k, double x) const {
-        return x <= -1 ? begin[k] : begin[k] + cheb::value(series[k], std::min(x, 1.0));
+        return x <= -1 ? y[k].begin : y[k].begin + cheb::value(y[k].change, std::min(x, 1.0));
     }
     [[nodiscard]] double x(double t) const { return start.until(t) / h - 1; }
 };
@@ -85,7 +88,7 @@ public:
     /// Stores an instantaneous energy change: a user's action or an impact.
     void add_jump(double t, std::size_t joint, const Work& work) { jumps_.push_back({list_.size(), t, joint, work}); }
     /// Stores the state at the end of the run, including instantaneous changes there.
-    void close(const Clock& end, std::vector<double> y);
+    void close(const Clock& end, const std::vector<double>& y);
 
     /// All angles, velocities and states at a time of the run.
     [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }

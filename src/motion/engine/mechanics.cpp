@@ -409,6 +409,9 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         add(c.normal);
     }
     add(base_);
+    has_functions_ = asks_functions() || !rates_.empty() || !whens_.empty();
+    for (std::size_t j = 0; j < joints(); ++j)
+        has_functions_ = has_functions_ || asked_spring(j).function != nullptr || asked_law(j).function != nullptr;
 }
 
 /// Except at breaks it is evaluated at t itself: a small step aside could change it within rounding, and a mass with
@@ -736,13 +739,6 @@ bool Mechanics::asks_functions() const {
     bool asks = false;
     for_each_signal([&](const Signal& s) { asks = asks || s.asks_functions(); });
     return asks;
-}
-
-bool Mechanics::has_functions() const {
-    bool has = asks_functions() || !rates_.empty() || !whens_.empty();
-    for (std::size_t j = 0; j < joints(); ++j)
-        has = has || asked_spring(j).function != nullptr || asked_law(j).function != nullptr;
-    return has;
 }
 
 /// Bounds the square of the greatest frequency by the greatest row sum (Gershgorin). The eigenvalue itself would cost

@@ -185,7 +185,7 @@ public:
     template <class Known>
     void loads_of_time(double t, Side side, std::vector<double>& loads, const Known& known) const {
         const double push = has_base() ? base(t, side) : 0;
-        loads.resize(joints());
+        if (loads.size() != joints()) loads.resize(joints());
         for (std::size_t i = 0; i < loads.size(); ++i) {
             const std::optional<double> load = known(i);
             loads[i] = load ? *load : loads_[i].of_time({t, side, {}});
@@ -262,7 +262,7 @@ public:
     void forget_failure() const;
     [[nodiscard]] bool asks_functions() const;
     /// Returns whether there is any user function.
-    [[nodiscard]] bool has_functions() const;
+    [[nodiscard]] bool has_functions() const { return has_functions_; }
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. An
     /// upper bound of it if there are many groups.
     [[nodiscard]] double fastest(const Frame& frame) const;
@@ -383,7 +383,7 @@ private:
     std::vector<Piecewise> rates_;  ///< rates of the user's states
     std::vector<Piecewise> whens_;  ///< functions `when` of the user's events
     std::vector<double> jumps_;     ///< times of jumps found in belts
-    bool nonlinear_ = false, all_linear_ = true, has_belts_ = false;
+    bool nonlinear_ = false, all_linear_ = true, has_belts_ = false, has_functions_ = false;
 };
 
 }  // namespace dinal::motion::engine

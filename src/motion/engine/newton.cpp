@@ -104,17 +104,13 @@ const IntegrationModes& integration_modes() {
 }
 
 /// Multiplies a column-major matrix of `inner` rows by a vector.
-void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
-    using Column = Eigen::Matrix<double, inner, 1>;
-    Column sums = Column::Zero();
-    for (std::size_t j = 0; j < columns; ++j) sums += vector[j] * Eigen::Map<const Column>(matrix + j * inner);
-    Eigen::Map<Column> result(product);
-    result = sums;
+DINAL_WIDE void multiply(const double* matrix, const double* vector, std::size_t columns, double* product) {
+    cheb::add_rows<inner / 4>(matrix, vector, columns, product);
 }
 
 /// The inverse of a matrix by elimination with pivoting. A general decomposition takes six times as long.
 using Inner = Eigen::Matrix<double, inner, inner>;
-Inner inverse_of(Inner A) {
+DINAL_WIDE Inner inverse_of(Inner A) {
     std::array<std::size_t, inner> pivots{};
     const auto column = [&A](std::size_t k) { return A.data() + k * inner; };
     for (std::size_t k = 0; k < inner; ++k) {

@@ -523,14 +523,15 @@ void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool st
     if (first == last || !problem_.limits.dense) return;
     const std::size_t n = sampled_.from;
     const double from = steps_.time(n + first), length = steps_.time(n + last) - from;
-    Kept kept{
-        .start = {from, 0}, .h = length / 2, .length = length, .begin = {block_.theta[first], block_.velocity[first]}};
-    kept.begin.insert(kept.begin.end(), states(first), states(first) + m_);
+    Kept kept{.start = {from, 0}, .h = length / 2, .length = length};
+    kept.y.push_back({block_.theta[first]}), kept.y.push_back({block_.velocity[first]});
+    for (std::size_t k = 0; k < m_; ++k) kept.y.push_back({states(first)[k]});
     const bool constant = m_ == 0 || !constant_rates_.empty();  // whether the rates are constant
     if (stands && constant) {
-        kept.series.resize(2 + m_);
-        for (std::size_t k = 0; k < m_; ++k)
-            kept.series[2 + k][0] = kept.series[2 + k][1] = constant_rates_[k] * length / 2;
+        for (std::size_t k = 0; k < m_; ++k) {
+            Series& change = kept.y[2 + k].change;
+            change[0] = change[1] = constant_rates_[k] * length / 2;
+        }
         kept.acting.resize(1);
         kept.acting[0].holds = true;
     } else if (affine_ && constant) {

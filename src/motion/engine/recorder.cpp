@@ -7,6 +7,7 @@
 
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/walls.hpp"
+#include "motion/first_below.hpp"
 
 namespace dinal::motion::engine {
 
@@ -132,8 +133,21 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     const Watched watched(v, exact, 0, series);
     std::vector<double>& zeros = room_.zeros;
     zeros.assign(1, -1);
+    const cheb::Series<node_count - 1> slope = cheb::derivative(series);
+    // The next zero of a velocity that is clear of zero at the beginning, or passes zero clearly before.
+    const auto next_zero = [&]() -> std::optional<double> {
+        const double from = zeros.back();
+        Nodes values = v;
+        for (double& each : values) each *= half;
+        const cheb::Bounded<node_count> curve(half, series, slope, values);
+        const double rate = from > -1 ? std::max(0.0, curve.slope(from)) : 0, far = rate / curve.second_bound();
+        const double clear = from > -1 ? rate * far / 2 : values[0];
+        if (half == 0 || !(clear > 4 * curve.floor()) || !(cheb::tail(series) <= 1e-9 * moving))
+            return watched.leaves(half, zeros.back());
+        return cheb::first_below(curve, std::min(1.0, from > -1 ? from + far : from));
+    };
     for (;;) {
-        const auto x = watched.leaves(half, zeros.back());
+        const auto x = next_zero();
         if (!x || *x >= until - 1e-12) break;
         zeros.push_back(*x);
         half = -half;
@@ -141,11 +155,11 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     // Between two zeros the velocity may be only the error of a series that fits the motion before or after.
     const auto moves = [&](std::size_t k) {
         const double from = zeros[k], to = k + 1 < zeros.size() ? zeros[k + 1] : until;
-        double most = std::fabs(exact((from + to) / 2));
+        const double least = 8 * problem_.tolerance * moving;
         for (std::size_t j = 0; j < node_count; ++j) {
-            if (cheb::nodes[j] > from && cheb::nodes[j] < to) most = std::max(most, std::fabs(v[j]));
+            if (cheb::nodes[j] > from && cheb::nodes[j] < to && std::fabs(v[j]) > least) return true;
         }
-        return most > 8 * problem_.tolerance * moving;
+        return std::fabs(exact((from + to) / 2)) > least;
     };
     int way = static_cast<int>(heading_[body]);
     bool moved = false;  // whether the body has moved on the stretch
@@ -263,7 +277,9 @@ double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, c
 
 void Recorder::keep(const Now& now, const Segment& segment, double length, double longest_delay) {
     if (!(length > 0) || (!problem_.limits.dense && longest_delay == 0)) return;
-    Kept kept{.start = segment.start, .h = segment.h, .length = length, .begin = now.y, .series = segment.series};
+    Kept kept{.start = segment.start, .h = segment.h, .length = length};
+    kept.y.reserve(now.y.size());
+    for (std::size_t k = 0; k < now.y.size(); ++k) kept.y.push_back({now.y[k], segment.series[k]});
     // The torques are needed for the legs of the course.
     if (problem_.limits.dense && problem_.keeps_torques) kept.acting = acting(now, segment);
     const double past = longest_delay > 0 ? now.t.hi - 2 * longest_delay : model::never;
@@ -339,7 +355,8 @@ void Recorder::add_friction(const Now& now, const Segment& segment, std::size_t 
     if (acting.holds) {
         acting.friction = segment.holding[joint];
     } else if (mechanics_.is_native(joint) && now.rubs(joint) && now.mode.leans[joint] == 0) {
-        const Nodes slips = mechanics_.slips(joint, segment.y, segment.belts[joint]);
+        const bool by_speed = problem_.system.joints[joint].friction.law.depends_on_speed();
+        const Nodes slips = by_speed ? mechanics_.slips(joint, segment.y, segment.belts[joint]) : Nodes{};
         mechanics_.add_native_friction(joint, now.mode, slips, 0, node_count, acting.friction);
         for (double& torque : acting.friction) torque = -torque;
     } else if (now.rubs(joint) || mechanics_.bristle(joint) != nullptr) {

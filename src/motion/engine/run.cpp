@@ -80,7 +80,7 @@ Engine::Engine(const Request& problem, Run& result)
     }
     if (problem.before != nullptr) solver_->know(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
-    plain_steps_.emplace(problem, mechanics_);
+    if (problem.step > 0) plain_steps_.emplace(problem, mechanics_);
 }
 
 // ---- the loop
@@ -155,7 +155,8 @@ bool Engine::advance() {
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
-    sizes_.find(mechanics_, segment_, now_.here());
+    sizes_ = solver_->sizes_at_start();
+    if (mechanics_.nonlinear()) sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && (ends_before(ending.x) || comes_early(ending))) return true;
@@ -172,7 +173,8 @@ bool Engine::advance() {
 
 /// Takes steps without events, which need no segment.
 bool Engine::take_plain_steps() {
-    if (pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides()) return false;
+    if (!plain_steps_ || pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides())
+        return false;
     double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
     for (const model::WantedEvent& event : problem_.drive.events) {
         breaks = std::min(breaks, event.when->next_break(now_.t.hi));

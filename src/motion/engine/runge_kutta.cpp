@@ -159,7 +159,7 @@ double RungeKutta::error_of_step(const Segment& s, const Frame& frame) const {
             per_torque += s.h * by * by / frame.inertia[group];
         }
         note(std::max(std::fabs(velocity), of_longest / longest_ * std::fabs(way)), n_ + i,
-             per_torque * sizes_.at_start[i]);
+             per_torque * sizes_.at_start.on_body(i));
     }
     for (std::size_t k = 0; k < m_; ++k)
         note(std::fabs(last_.error[2 * groups + k]), 2 * n_ + k, s.h * fastest_.rates[k]);

@@ -115,6 +115,7 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         of_time_only_ = of_time_only_ && !controller && !part.of_motion;
         parts_.push_back(part);
     }
+    if (is_sampled()) sampled_ = std::make_unique<Sampled>();
 }
 
 double Signal::value_of(std::size_t i, const Moment& at) const {
@@ -169,6 +170,14 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
         if (first == 0 && t == when.times[0] && rest == when.rests[0]) out[0] = M, first = 1;
     }
     if (when.to_break) out[--end] = at_node(node_count - 1);
+    if (sampled_ != nullptr && !when.from_break && when.times[1] < sampled_->until) {
+        const NodeTimes& then = sampled_->when;
+        if (first == 0) out[0] = at_node(0), first = 1;
+        for (; first < end && when.times[first] < sampled_->until; ++first) {
+            const double since = (when.times[first] - then.times[0]) + (when.rests[first] - then.rests[0]);
+            out[first] = cheb::value(sampled_->series, since / then.h - 1);
+        }
+    }
     spread_.first = first;
     spread_.rests = std::span(when.rests).subspan(first, end - first);
     spread_.middle = when.times[node_count / 2], spread_.rest = when.rests[node_count / 2], spread_.half = when.h;
@@ -176,8 +185,16 @@ void Signal::sample(const NodeTimes& when, Nodes& out) const {
                                               std::span(out).subspan(first, end - first), &spread_);
     std::fill(out.begin() + static_cast<std::ptrdiff_t>(first + good), out.begin() + static_cast<std::ptrdiff_t>(end),
               std::numeric_limits<double>::quiet_NaN());
+    if (sampled_ != nullptr) sampled_->values = out;
     known_ = {{{when.from_break ? nowhen : when.times[0], when.rests[0], out[0]},
                {when.to_break ? nowhen : when.times[node_count - 1], when.rests[node_count - 1], out[node_count - 1]}}};
+}
+
+void Signal::keep(const NodeTimes& when, double tolerance) const {
+    if (sampled_ == nullptr || is_read()) return;
+    sampled_->when = when, sampled_->series = cheb::fit(sampled_->values);
+    const bool decayed = cheb::tail(sampled_->series) <= tolerance * cheb::size(sampled_->series);
+    sampled_->until = decayed ? when.times[node_count - 1] : -model::never;
 }
 
 double Signal::next_break(double t) const {

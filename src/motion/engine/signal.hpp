@@ -218,6 +218,10 @@ public:
     [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
     /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
     void sample(const NodeTimes& when, Nodes& out) const;
+    /// A stretch was resolved. If the next one begins in it, what is not read need not be called again up to its end,
+    /// where its series has decayed to this part.
+    void keep(const NodeTimes& when, double tolerance) const;
+    [[nodiscard]] double kept_until() const { return sampled_ == nullptr ? -model::never : sampled_->until; }
 
     [[nodiscard]] double next_break(double t) const;
     [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
@@ -359,6 +363,13 @@ private:
         Side side = Side::at;
         double M = 0;
     } asked_last_{};
+    struct Sampled {
+        Nodes values{};  ///< of the last stretch, resolved or not
+        NodeTimes when{};
+        double until = -model::never;  ///< the series serves
+        Series series{};
+    };
+    std::unique_ptr<Sampled> sampled_;  ///< null if nothing is sampled
 };
 
 }  // namespace dinal::motion::engine

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "motion/engine/collocation.hpp"
+#include "motion/engine/mechanics.hpp"
+#include "motion/engine/segment.hpp"
 
 namespace dinal::motion::engine {
 
@@ -18,6 +19,8 @@ public:
         for (const auto& [body, by] : joint.of) size += of_bodies_[body] / std::fabs(by);
         return size;
     }
+
+    [[nodiscard]] double on_body(std::size_t body) const { return of_bodies_[body]; }
 
 private:
     std::vector<double> of_bodies_;
