@@ -64,9 +64,16 @@ private:
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;
 };
 
-/// Returns the moment at which a joint that holds would slip this way with this speed, or with the least that is not
-/// lost in rounding; `y` is room for its state.
-Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, model::Motion way, double speed,
+/// A motion beside that of a joint at slip 0.
+struct Nearby {
+    model::Motion side;  ///< of the angle
+    model::Motion way;   ///< of the slip; stuck: none
+    double far = 0, speed = 0;
+};
+
+/// Returns the moment at which a joint would be there, or as near as is not lost in rounding; `y` is room for its
+/// state.
+Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, const Nearby& there,
                    std::vector<double>& y);
 
 /// Returns how far the torque that holds a joint is beyond what the joint can hold, and which way it would go. Only the

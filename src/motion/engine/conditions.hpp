@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,13 @@ public:
         std::vector<SlideChange> slides{};
         double work = 0;  ///< of the load of the first, which has put velocities on the condition
         bool endless = false;
+        /// A load that was crossed to and fro, and does not slide.
+        struct Back {
+            Piecewise* function;
+            std::size_t condition;
+            double since;  ///< it was crossed before
+        };
+        std::optional<Back> back{};
     };
     /// Crosses those at which the stretch has ended. Many jumps in a row that are next to nothing are digits that the
     /// user has cut off: then all are let go, and the functions are sampled from there on; so they are beside a kink
@@ -67,6 +75,7 @@ public:
 
 private:
     void let_go(double t);
+    [[nodiscard]] bool comes_back(const Piecewise& function, std::size_t condition, double now) const;
     void cease() {
         for (const SlideChange& change : slides_.end()) ceased_.push_back(change);
     }
@@ -81,6 +90,8 @@ private:
         std::size_t step = 0;
         double from = 0, t = -model::never;  ///< the decision that it had until then
         double within = 0;                   ///< it was taken to be so near to zero
+        double earlier = -model::never;      ///< the time of the crossing before, which was not at t
+        std::uint64_t of = 0;                ///< what it depends on
     } last_;
     double within_ = 0;       ///< the same of those that are about to be crossed
     int small_in_a_row_ = 0;  ///< jumps

@@ -56,7 +56,7 @@ private:
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     [[nodiscard]] bool stands(std::size_t joint) const;
-    std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
+    std::optional<BothSides> both_sides(std::size_t joint, std::optional<double> speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
     void settle_at_limit(std::size_t joint);
@@ -227,9 +227,9 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
 }
 
 /// The same for a joint that holds where loads may jump at slip 0, or at a slip that is rounding and stays so. If they
-/// drive it back from both sides, some value between both holds it (Filippov). But the loads at slip 0 count at a
-/// standstill: where they hold it, their limit is the only one, and where they do not, it leaves as soon as sliding
-/// friction does not drive it back. `may_go`: it was seen to come to its limit.
+/// drive it back from both sides, some value between both holds it (Filippov); so they may on either side of its place.
+/// But the loads at slip 0 count at a standstill: where they hold it, their limit is the only one, and where they do
+/// not, it leaves as soon as sliding friction does not drive it back. `may_go`: it was seen to come to its limit.
 double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, bool may_go) {
     Slipping& how = mode().friction[j];
     how.beside = 0, how.driven_back = false;
@@ -239,10 +239,12 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     std::vector<double> soon = now().y;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
-        const bool exact = speed != rounded;
-        how.driven_back = exact && stands(j);  // in motion, rounding says of which side the loads at slip 0 are
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
+        const auto of_place = both_sides(j, {}, now().here());
+        // In motion, rounding says of which side the loads at slip 0 are.
+        how.driven_back = speed != rounded && stands(j) && !(of_place && of_place->drive_back);
+        if (how.driven_back) both = both_sides(j, speed, now().here());
         const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
         if (!then || !then->drive_back) continue;
         if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
@@ -261,13 +263,14 @@ bool Decider::stands(std::size_t j) const {
     });
 }
 
-/// Returns none if something is not finite.
-std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, double speed, const Moment& here) {
+/// Of the angle, and of the slip if a speed is given. Returns none if something is not finite.
+std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here) {
     BothSides both;
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
-        const Moment at = just_beside(mechanics_, here, j, side, speed, y);
+        const Moment at =
+            just_beside(mechanics_, here, j, {side, speed ? side : Motion::stuck, 0, speed.value_or(0)}, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
         (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
         Motion way = Motion::stuck;

@@ -67,6 +67,7 @@ private:
 
     // The events that end stretches (events.cpp). Functions that return bool return false if the run is over.
     bool handle(const Ending& ending);
+    bool cross(const Ending& ending);
     bool come_to_a_stop(std::size_t joint);
     bool release(const Ending& ending);
     bool meet_stop(const Ending& ending);
@@ -84,6 +85,17 @@ private:
     bool press_stops();
     void press(std::size_t joint, int side);
     void touch_walls();
+
+    // Rest on a surface on which a load jumps (settle.cpp).
+    struct Passages {
+        double leg = model::never, all = model::never;
+    };
+    enum class Settles { no, soon, now };
+    Settles settle(const Conditions::Crossed::Back& back);
+    [[nodiscard]] std::optional<Passages> next_passages(std::size_t joint, const Now& still, double speed, double far);
+    [[nodiscard]] bool put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
+                                      double speed, double later);
+    void wait(double rest);
 
     // Impacts and acts (impacts.cpp).
     struct Bounces {

@@ -140,9 +140,9 @@ void Guards::watch_release(std::size_t joint) {
         if (std::isinf(most[0])) continue;  // a freewheel, backward
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
-            return of_.balances.on_stretch(segment_, x,
-                                           between ? just_beside(mechanics_, at, joint, side, beside_zero, beside) : at,
-                                           now_.mode, frame_, found);
+            return of_.balances.on_stretch(
+                segment_, x, between ? just_beside(mechanics_, at, joint, {side, side, 0, beside_zero}, beside) : at,
+                now_.mode, frame_, found);
         };
         if (between) {
             for (std::size_t j = 0; j < node_count; ++j) {
