@@ -60,6 +60,7 @@ private:
     void again(Flow::Attempt attempt);
 
     // The end (finish.cpp).
+    bool last_instant();
     void finish();
     [[nodiscard]] std::optional<model::Outcome> at_rest();
     void explain_end();

@@ -102,7 +102,9 @@ void Guards::watch_slip(std::size_t joint) {
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
-    if (!zero && curve(1) <= curve.floor()) zero = 1;
+    // What the rounding of the time puts behind the end is at the end.
+    const double late = segment_.to_the_end ? 64 * rounding * std::fabs(segment_.end) / segment_.h : 0;
+    if (!zero && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;
     // A slip that only touches zero does so at its lowest place.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;

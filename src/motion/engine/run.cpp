@@ -140,6 +140,7 @@ void Engine::run() {
         }
         alive = advance();
     }
+    if (alive) last_instant();
     finish();
 }
 

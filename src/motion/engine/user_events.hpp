@@ -32,6 +32,9 @@ public:
     /// Returns whether each is read, and certainly stays on its side of zero where the motion is within these ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges);
 
+    /// Returns those that pass zero at the present, but for rounding.
+    [[nodiscard]] std::vector<std::size_t> passing(const Now& now, const Segment& last, double h, Balances& balances,
+                                                   const Frame& frame);
     [[nodiscard]] std::vector<double> values(const Moment& at) const;
     /// These are about to act.
     void pass(const std::vector<std::size_t>& events);
