@@ -423,4 +423,33 @@ test("a body that stands on such a place from the start stays, and leaves where 
     near(run.theta[#run], -0.758 + (2.1 - 0.534 - 0.951 - 0.435) / 2, 1e-12)
 end)
 
+test("a load slides beside the friction of a belt, which may move and turn the slip", function()
+    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.3, Re = 0.4 }
+    local function sin_2t(t) return math.sin(2 * t) end
+    local function ramp(t) return 0.2 * t - 0.5 end
+    for _, case in ipairs {
+        { function(_, theta, v) return v + 2 * theta > 0 and -5 or 5 end, 0.5, function(_, theta) return -2 * theta end },
+        { function(t, _, v) return v - math.sin(t) > 0 and -5 or 5 end, sin_2t, math.sin },
+        { function(_, theta, v) return v + theta - 0.3 > 0 and -5 or 5 end, ramp, function(_, theta) return 0.3 - theta end },
+    } do
+        local M, belt, surface = table.unpack(case)
+        local run = sys:simulate { M = M, belt = belt, theta0 = 1, t_end = 8 }
+        equal(run.status, "end")
+        closes(run)
+        local from = #switches(run) > 0 and switches(run)[1].t or 0
+        assert(from < 0.5 and #switches(run) <= 1, from)
+        for i, t in ipairs(run.t) do
+            if t > from then
+                near(run.velocity[i], surface(t, run.theta[i]), 1e-12)
+                near(math.abs(run.friction[i]), 0.3, 1e-15)
+            end
+        end
+    end
+    -- A belt that the surface follows holds the mass until the load is too weak, as dry friction of both would.
+    local function f(t) return 0.9 * math.sin(1.3 * t) end
+    local run = sys:simulate { M = function(t, _, v) return (v > 0.2 and -1 or 1) + f(t) end, belt = 0.2, t_end = 12 }
+    local dry = system { I = 1, k = 1, C = 0.2, Rd = 1.3, Re = 1.4 }:simulate { M = f, belt = 0.2, t_end = 12 }
+    near(run.theta, dry.theta, 1e-10)
+end)
+
 finish()
