@@ -406,7 +406,9 @@ private:
         return {.kind = Known::Kind::object, .object = place};
     }
     Known constant(const Function& function, int number) {
-        const Prototype::Constant& found = function.code.constants.at(static_cast<std::size_t>(number));
+        const auto place = static_cast<std::size_t>(number);
+        if (place >= function.code.constants.size()) throw Obstacle{"its code is of another Lua"};
+        const Prototype::Constant& found = function.code.constants[place];
         double value = 0;
         if (found.number.size() == sizeof value) std::memcpy(&value, found.number.data(), sizeof value);
         switch (found.type) {
@@ -797,9 +799,9 @@ private:
             const bool is_call = i.code() == Code::call || i.code() == Code::tailcall;
             if (is_call && at + 1 != frame.at) break;
             const bool same = i.a() == Instruction{frame.function->code.instruction(frame.at - 1)}.a();
-            if (by_name && same) {
-                return fmt::format(" ({})", frame.function->code.constants.at(static_cast<std::size_t>(i.c())).text);
-            }
+            const auto& constants = frame.function->code.constants;
+            const auto place = static_cast<std::size_t>(i.c());
+            if (by_name && same && place < constants.size()) return fmt::format(" ({})", constants[place].text);
         }
         return "";
     }

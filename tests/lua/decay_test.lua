@@ -162,4 +162,18 @@ test("steady finds the rest to which a smooth motion dies out, whatever other st
     end
 end)
 
+test("a motion that is tiny from the start beside the numbers of functions that are not read follows the linear one", function()
+    for i = 1, 40 do
+        local k, c, size = between(0.3, 3), between(0.2, 2), between(1e-13, 1e-9)
+        local spring, drag = one_of(shapes), one_of(shapes)
+        local M = unread(function(_, theta, v) return -k * spring(theta) - c * drag(v) end)
+        local run = system { I = 1, k = 0 }:simulate { M = M, theta0 = size, t_end = 100 / c, times = { 0, 1, 4 } }
+        local what = ("system %d, %g: %s"):format(i, size, run.outcome)
+        equal(run.t_end, 100 / c, what)
+        equal(run.status, "end", what)
+        local linear = system { I = 1, k = k, C = c }:simulate { theta0 = size, t_end = 100 / c, times = { 0, 1, 4 } }
+        for row = 1, 3 do near(run.theta[row], linear.theta[row], 1e-14 + 10 * size ^ 2) end
+    end
+end)
+
 finish()

@@ -129,4 +129,40 @@ test("a step of M at the end of a step of rk4 acts from there on", function()
     near(sys:simulate(merged(options, { integrator = integrator.rk4 { h = 0.01 } })).theta, exact.theta, 1e-7)
 end)
 
+test("what happens right at the end of a run is told by it, by every integrator, and not again by the run that goes on", function()
+    local function kinds(run, from)
+        local told = {}
+        for _, event in ipairs(run.events) do
+            if event.t >= from then told[#told + 1] = event.kind end
+        end
+        return table.concat(told, " ")
+    end
+    local function go(sys, task, methods, wanted, later)
+        for _, method in ipairs(methods) do
+            local run = sys:simulate(merged(task, { integrator = method }))
+            equal(kinds(run, 0), wanted, tostring(method))
+            equal(kinds(run:continue { t_end = task.t_end + 0.1 }, task.t_end + 1e-6), later or "", tostring(method))
+        end
+    end
+    local general = { integrator.rk4 { h = 0.01 }, integrator.spectral {} }
+    local all = { integrator.exact {}, table.unpack(general) }
+    local still, flat = system { I = 1, k = 1, Rd = 0.2 }, system { I = 1, k = 0, Rd = 0.5 }
+    -- These are exact in each: constant torques. A time such as 0.3 is rounded, so that the stop may be behind it.
+    for _, t in ipairs { 2, 0.3, 1 / 3, 0.7 } do
+        go(flat, { velocity0 = t / 2, t_end = t }, general, "rest")
+        go(flat, { velocity0 = t * 1.25, M = -0.75, t_end = t }, general, "turn")
+        local user = { { when = function(at) return at - t end } }
+        go(flat, { velocity0 = t / 2, t_end = t, events = user }, general, "rest user")
+        go(still, { theta0 = 0.9, t_end = t, events = user }, general, "user")
+        go(still, { theta0 = 0.9, t_end = t, events = { { when = user[1].when, stop = true } } }, general, "user")
+        -- A release is the first moment of a slip: the run that goes on tells it.
+        go(flat, { M = function(at) return 0.5 / t * at end, t_end = t, events = user }, general, "user")
+    end
+    go(still, { theta0 = 0.5, t_end = math.pi }, { integrator.exact {}, integrator.spectral {} }, "rest")
+    go(still, { theta0 = 0.9, t_end = math.pi }, { integrator.exact {}, integrator.spectral {} }, "turn")
+    go(still, { M = excitation.step { at = 2, amplitude = 1 }, t_end = 2 }, all, "")
+    -- One that stays at zero has not passed it.
+    go(flat, { velocity0 = 1, t_end = 2, events = { { when = function(_, _, v) return v end } } }, general, "rest")
+end)
+
 finish()

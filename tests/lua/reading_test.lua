@@ -555,4 +555,25 @@ test("a short window in a rate, a law of friction or the condition of an event i
     assert(not window(found[2].t))
 end)
 
+test("code that was tampered with is read no further than it goes", function()
+    local dump = string.dump(function(t) return 2 * t + (t > 1 and 0.5 or 0) end)
+    local seed = 11
+    local function below(n)
+        seed = seed * 16807 % 2147483647
+        return seed % n
+    end
+    local read = 0
+    for _ = 1, 1000 do
+        local bytes = { dump:byte(1, -1) }
+        for _ = 1, 2 do bytes[40 + below(#bytes - 39)] = below(256) end
+        local good, f = pcall(load, string.char(table.unpack(bytes)), "x", "b")
+        if good and f and debug.getinfo(f).nups <= 1 then
+            local said = excitation.scripted(f):obstacle()
+            assert(said == nil or not tostring(said):find("vector", 1, true), said)
+            read = read + 1
+        end
+    end
+    assert(read > 50, read)
+end)
+
 finish()

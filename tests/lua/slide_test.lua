@@ -362,4 +362,94 @@ test("explain() says when the mass slid along a surface, and why that ended", fu
     has(story, "because M drives it back from both sides of velocity 0")
 end)
 
+-- A load -D sgn(theta - a) beside dry friction: the body passes a and is stopped beside it, ever faster.
+local function passes(D, a) return function(_, theta) return theta > a and -D or theta < a and D or 0 end end
+
+test("a body that a load drives back to a place comes to rest right there", function()
+    for _, form in ipairs { passes, function(D, a) return function(_, theta) return theta > a and -D or D end end } do
+        for _, case in ipairs { { 1, 0.3, 0 }, { 2.5, 0.9, 0.7 }, { 1, 0.02, -0.4 }, { 3, 2.9, 0.1 } } do
+            local D, Rd, a = table.unpack(case)
+            local run = system { I = 1, k = 0, Rd = Rd }:simulate { M = form(D, a), theta0 = a, velocity0 = 1.3, t_end = 200 }
+            equal(run.status, "stuck")
+            local last = run.events[#run.events]
+            equal(last.kind, "stick")
+            equal(run.theta[#run], a)
+            -- out against D + Rd, back with D - Rd: each passage takes so much longer than the one after
+            local out, back = D + Rd, D - Rd
+            local slower = math.sqrt(back / out)
+            near(last.t, 1.3 * (1 / out + slower / back) / (1 - slower), 3e-8 * last.t)  -- the last passages are in the last digits
+            for i = 1, #run do assert(math.abs(run.friction[i]) <= Rd * (1 + 1e-15), run.friction[i]) end
+            closes(run)
+        end
+    end
+end)
+
+test("a spring and other loads do not keep it from there, and it leaves where they overcome both", function()
+    local D, Rd, Re, a = 1.2, 0.4, 0.5, 0.6
+    local g = passes(D, a)
+    local function f(t) return 0.3 * math.sin(t) + (t > 20 and 0.5 * (t - 20) or 0) end
+    local run = system { I = 1, k = 0.5, C = 0.1, Rd = Rd, Re = Re }:simulate {
+        M = function(t, theta) return g(t, theta) + f(t) end, theta0 = -2, t_end = 24.5,
+    }
+    local stick, slip
+    for _, event in ipairs(run.events) do
+        if event.kind == "stick" then stick = event elseif event.kind == "slip" then slip = event end
+    end
+    equal(stick.theta, a)
+    equal(slip.theta, a)
+    near(f(slip.t) - 0.5 * a, D + Re, 1e-10)
+    closes(run)
+    -- from there on it has D and Rd against it
+    local free = system { I = 1, k = 0.5, C = 0.1, Rd = Rd, Re = Re }:simulate {
+        M = function(t) return f(t) - D end, theta0 = a, t_start = slip.t, t_end = 24.5,
+    }
+    near(run:at(24.5), free:at(24.5), 1e-9)
+end)
+
+test("a body that stands on such a place from the start stays, and leaves where it is pushed beyond both", function()
+    local sys = system { I = 1, k = 0, Rd = 0.3 }
+    for _, at_0 in ipairs { -1, 0, 1 } do
+        local M = function(t, theta) return (theta > 0.5 and -1 or theta < 0.5 and 1 or at_0) + (t > 3 and 1.5 or 0.2) end
+        local run = sys:simulate { M = M, theta0 = 0.5, t_end = 4 }
+        equal(kinds_of(run), "slip")
+        near(run.events[1].t, 3, 1e-12)
+        near(run.theta[#run], 0.6, 1e-12)  -- by 1.5 - 1 - 0.3
+    end
+    -- A load on the velocity adds to it.
+    local M = function(t, theta, v)
+        return -0.534 * (theta > -0.758 and 1 or theta < -0.758 and -1 or 0) - 0.951 * (v > 0 and 1 or v < 0 and -1 or 0) + (t > 3 and 2.1 or 0)
+    end
+    local run = system { I = 1, k = 0, Rd = 0.435 }:simulate { M = M, theta0 = -0.758, t_end = 4 }
+    near(run.theta[#run], -0.758 + (2.1 - 0.534 - 0.951 - 0.435) / 2, 1e-12)
+end)
+
+test("a load slides beside the friction of a belt, which may move and turn the slip", function()
+    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.3, Re = 0.4 }
+    local function sin_2t(t) return math.sin(2 * t) end
+    local function ramp(t) return 0.2 * t - 0.5 end
+    for _, case in ipairs {
+        { function(_, theta, v) return v + 2 * theta > 0 and -5 or 5 end, 0.5, function(_, theta) return -2 * theta end },
+        { function(t, _, v) return v - math.sin(t) > 0 and -5 or 5 end, sin_2t, math.sin },
+        { function(_, theta, v) return v + theta - 0.3 > 0 and -5 or 5 end, ramp, function(_, theta) return 0.3 - theta end },
+    } do
+        local M, belt, surface = table.unpack(case)
+        local run = sys:simulate { M = M, belt = belt, theta0 = 1, t_end = 8 }
+        equal(run.status, "end")
+        closes(run)
+        local from = #switches(run) > 0 and switches(run)[1].t or 0
+        assert(from < 0.5 and #switches(run) <= 1, from)
+        for i, t in ipairs(run.t) do
+            if t > from then
+                near(run.velocity[i], surface(t, run.theta[i]), 1e-12)
+                near(math.abs(run.friction[i]), 0.3, 1e-15)
+            end
+        end
+    end
+    -- A belt that the surface follows holds the mass until the load is too weak, as dry friction of both would.
+    local function f(t) return 0.9 * math.sin(1.3 * t) end
+    local run = sys:simulate { M = function(t, _, v) return (v > 0.2 and -1 or 1) + f(t) end, belt = 0.2, t_end = 12 }
+    local dry = system { I = 1, k = 1, C = 0.2, Rd = 1.3, Re = 1.4 }:simulate { M = f, belt = 0.2, t_end = 12 }
+    near(run.theta, dry.theta, 1e-10)
+end)
+
 finish()

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "motion/contact.hpp"
 
@@ -87,12 +88,16 @@ bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, cons
     return good;
 }
 
-Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, Motion way, double speed,
+Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, const Nearby& there,
                    std::vector<double>& y) {
+    constexpr double least = std::numeric_limits<double>::min();
     y.assign(at.y.begin(), at.y.end());
+    const auto move = [](double& value, double by, double amount) {
+        value += by * std::max({4 * rounding * std::fabs(value), amount, least});
+    };
     for (const auto& [body, by] : mechanics.system().joints[joint].of) {
-        double& v = y[mechanics.bodies() + body];
-        v += model::sign_of(way) * by * std::max(4 * rounding * std::fabs(v), speed);
+        move(y[body], model::sign_of(there.side) * by, there.far);
+        move(y[mechanics.bodies() + body], model::sign_of(there.way) * by, there.speed);
     }
     return {at.t, at.side, y, true};
 }

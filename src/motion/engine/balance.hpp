@@ -64,9 +64,16 @@ private:
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;
 };
 
-/// Returns the moment in which a sticking joint slips in direction `way` at `speed`, or at the smallest speed that
-/// survives rounding. `y` is storage for its state.
-Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, model::Motion way, double speed,
+/// A motion near that of a joint at slip 0.
+struct Nearby {
+    model::Motion side;         ///< side to which the angle differs
+    model::Motion way;          ///< direction of the slip; stuck: slip 0
+    double far = 0, speed = 0;  ///< differences of angle and slip
+};
+
+/// Returns the moment of this nearby motion, at the smallest differences that survive rounding if they are smaller. `y`
+/// is storage for its state.
+Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, const Nearby& there,
                    std::vector<double>& y);
 
 /// Returns by how much the torque on a sticking joint exceeds the holding limit, and sets the direction of breakaway.

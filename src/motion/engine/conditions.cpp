@@ -158,7 +158,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
-        const bool just_crossed = last_.function == &function && last_.t == at.t;
+        const bool just_crossed = last_.function == &function && last_.t == at.t && (last_.of & of_leaving) != 0;
         function.decide({t, at.side, y}, just_crossed ? again : again | of_leaving);
     });
     forgotten_ = false;
@@ -222,7 +222,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     std::vector<std::pair<Piecewise*, std::size_t>>& first = ending.conditions;
     for (const auto& [x, function, condition, within, blurred] : search.crossings()) {
         if (x > ending.x + one_instant) continue;
-        ending.blurred = ending.blurred || blurred;
+        ending.blurred = ending.blurred || blurred || comes_back(*function, condition, now);
         within_ = std::max(within_, within);
         const auto same =
             std::find_if(first.begin(), first.end(), [f = function](const auto& c) { return c.first == f; });
@@ -234,10 +234,19 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     }
 }
 
+/// A condition of places that was just crossed may have been away for less than the rounding of a long stretch: a jump
+/// of torques does not turn it back at once.
+bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
+    const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
+    const std::uint64_t places = bodies < 64 ? (std::uint64_t{1} << bodies) - 1 : ~std::uint64_t{0};
+    const auto [step, beyond, of] = function.conditions()[condition];
+    return last_.function == &function && last_.t == now && last_.step == step && (of & ~places) == 0;
+}
+
 Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& chatter) {
     constexpr double small = 1e-5, nothing = 1e-13;
     constexpr int most_small = 30;
-    constexpr double soon = 1e-6;
+    constexpr double soon = 1e-6, rather_soon = 1e-5;
     const bool often = chatter.too_often(now.t.hi);
     Crossed crossed;
     bool all_small = true;
@@ -250,8 +259,9 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool soon_again = last_.function == function && here.t - last_.t <= soon * unit_;
         const bool back = soon_again && last_.step == step && last_.from == beyond;
+        const double earlier = last_.t < here.t ? last_.t : last_.earlier, since = here.t - earlier;
         chatter.crossed(back);
-        last_ = {function, step, function->decision(step), here.t, within_};
+        last_ = {function, step, function->decision(step), here.t, within_, earlier, of};
         const double before = function->value(here);
         function->cross(condition);
         const double jump = std::fabs(function->value(here) - before);
@@ -264,6 +274,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         if (!driven_back || !clear || ending.conditions.size() > 1) continue;
         if (const auto begun = slides_.begin(*function, jump, now)) {
             crossed.slides.push_back({begun->joint, true}), crossed.work = begun->work, chatter.crossed(false);
+        } else if (since <= rather_soon * unit_) {
+            crossed.back = {function, condition, since};
         }
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;

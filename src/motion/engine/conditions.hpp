@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -53,6 +54,13 @@ public:
         std::vector<SlideChange> slides{};
         double work = 0;  ///< work done by the first sliding load when the velocities were moved onto the condition
         bool endless = false;
+        /// A condition of a load that was crossed back and forth without a slide.
+        struct Back {
+            Piecewise* function;
+            std::size_t condition;
+            double since;  ///< time of its previous crossing
+        };
+        std::optional<Back> back{};
     };
     /// Crosses the conditions at which the stretch has ended. A long row of tiny jumps comes from truncated digits:
     /// then all decisions are dropped, and the functions are sampled from there on. The same happens at a kink that
@@ -68,6 +76,7 @@ public:
 
 private:
     void let_go(double t);
+    [[nodiscard]] bool comes_back(const Piecewise& function, std::size_t condition, double now) const;
     void cease() {
         for (const SlideChange& change : slides_.end()) ceased_.push_back(change);
     }
@@ -82,6 +91,8 @@ private:
         std::size_t step = 0;
         double from = 0, t = -model::never;  ///< the decision before, and the time at which it changed
         double within = 0;                   ///< greatest |margin| that counted as zero
+        double earlier = -model::never;      ///< time of the previous crossing that was not at t
+        std::uint64_t of = 0;                ///< the arguments on which the condition depends, a bit each
     } last_;
     double within_ = 0;       ///< the same for the conditions about to be crossed
     int small_in_a_row_ = 0;  ///< number of successive small jumps

@@ -56,7 +56,7 @@ private:
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     [[nodiscard]] bool stands(std::size_t joint) const;
-    std::optional<BothSides> both_sides(std::size_t joint, double speed, const Moment& here);
+    std::optional<BothSides> both_sides(std::size_t joint, std::optional<double> speed, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
     void settle_at_limit(std::size_t joint);
@@ -232,9 +232,9 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
     return worst;
 }
 
-/// Returns the excess of a sticking joint whose loads may jump at slip 0, or whose slip is rounding and stays so. If
-/// the loads of both sides drive the slip back, a mixture of them holds the joint (Filippov). At standstill the loads
-/// at slip 0 count first: if they hold the joint, only their limit matters; if not, it leaves as soon as sliding
+/// Returns the excess of a sticking joint whose loads may jump at slip 0 or at its place, or whose slip is rounding and
+/// stays so. If the loads of both sides drive the joint back, a mixture of them holds it (Filippov). At standstill the
+/// loads at slip 0 count first: if they hold the joint, only their limit matters; if not, it leaves as soon as sliding
 /// friction no longer drives it back. `may_go` says whether it was seen to reach its limit.
 double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& towards, bool may_go) {
     Slipping& how = mode().friction[j];
@@ -245,10 +245,12 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     std::vector<double> soon = now().y;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
-        const bool exact = speed != rounded;
-        how.driven_back = exact && stands(j);  // in motion, rounding determines the side of the loads at slip 0
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
+        const auto of_place = both_sides(j, {}, now().here());
+        // In motion, rounding determines the side of the loads at slip 0.
+        how.driven_back = speed != rounded && stands(j) && !(of_place && of_place->drive_back);
+        if (how.driven_back) both = both_sides(j, speed, now().here());
         const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
         if (!then || !then->drive_back) continue;
         if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
@@ -267,13 +269,15 @@ bool Decider::stands(std::size_t j) const {
     });
 }
 
-/// Returns the loads on both sides of slip 0; empty if a value is not finite.
-std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, double speed, const Moment& here) {
+/// Returns the loads on both sides of slip 0 if a speed is given, otherwise on both sides of the present angle; empty
+/// if a value is not finite.
+std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here) {
     BothSides both;
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
-        const Moment at = just_beside(mechanics_, here, j, side, speed, y);
+        const Moment at =
+            just_beside(mechanics_, here, j, {side, speed ? side : Motion::stuck, 0, speed.value_or(0)}, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
         (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
         Motion way = Motion::stuck;

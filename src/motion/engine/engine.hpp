@@ -60,6 +60,7 @@ private:
     void again(Flow::Attempt attempt);
 
     // The end (finish.cpp).
+    bool last_instant();
     void finish();
     [[nodiscard]] std::optional<model::Outcome> at_rest();
     void explain_end();
@@ -67,6 +68,7 @@ private:
 
     // Events that end a stretch (events.cpp). The functions return false if the run is over.
     bool handle(const Ending& ending);
+    bool cross(const Ending& ending);
     bool come_to_a_stop(std::size_t joint);
     bool release(const Ending& ending);
     bool meet_stop(const Ending& ending);
@@ -85,6 +87,17 @@ private:
     bool press_stops();
     void press(std::size_t joint, int side);
     void touch_walls();
+
+    // Rest on a surface at which a load jumps (settle.cpp).
+    struct Passages {
+        double leg = model::never, all = model::never;
+    };
+    enum class Settles { no, soon, now };
+    Settles settle(const Conditions::Crossed::Back& back);
+    [[nodiscard]] std::optional<Passages> next_passages(std::size_t joint, const Now& still, double speed, double far);
+    [[nodiscard]] bool put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
+                                      double speed, double later);
+    void wait(double rest);
 
     // Impacts and user actions (impacts.cpp).
     struct Bounces {

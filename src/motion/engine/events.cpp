@@ -34,16 +34,8 @@ bool Engine::handle(const Ending& ending) {
             contacts_.of[j].edge = -ending.side;
             return goes_on();
         }
-        case By::condition: {
-            pace_.go_on();
-            const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
-            result_.jumps += crossed.count;
-            if (crossed.work != 0)
-                recorder_->add_jump(now_.t.hi, crossed.slides.front().joint.value_or(0), {.input = crossed.work});
-            for (const SlideChange& change : crossed.slides) recorder_->tell_slide(now_, change);
-            if (crossed.endless && crossed.jumps) return fail(Outcome::chattering);
-            return decide(true);
-        }
+        case By::condition:
+            return cross(ending);
         case By::relay:
             mechanics_.loads()[j].toggle(index(ending.side));
             tell(EventKind::switched, j);
@@ -52,6 +44,19 @@ bool Engine::handle(const Ending& ending) {
             return act_all(ending.users);
     }
     return true;
+}
+
+/// Handles a change of conditions in functions that are read.
+bool Engine::cross(const Ending& ending) {
+    pace_.go_on();
+    const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
+    result_.jumps += crossed.count;
+    if (crossed.work != 0)
+        recorder_->add_jump(now_.t.hi, crossed.slides.front().joint.value_or(0), {.input = crossed.work});
+    for (const SlideChange& change : crossed.slides) recorder_->tell_slide(now_, change);
+    const Settles settles = crossed.back ? settle(*crossed.back) : Settles::no;
+    if (crossed.endless && crossed.jumps && settles == Settles::no) return fail(Outcome::chattering);
+    return decide(true);
 }
 
 /// Handles a slip that has reached 0, or passed it because the belt jumped.

@@ -15,6 +15,14 @@ using model::Joint;
 using model::Motion;
 using model::Outcome;
 
+/// At the end of the window: events of the user that pass zero right there are told, as a standstill is. Returns false
+/// if the run was over before.
+bool Engine::last_instant() {
+    if (problem_.drive.events.empty() || outcome_ != Outcome::reached_end) return true;
+    const auto passing = users_.passing(now_, segment_, pace_.h, *balances_, frames_->of(now_.mode));
+    return passing.empty() || act_all(passing);
+}
+
 void Engine::finish() {
     if (outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering) explain_end();
     const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;

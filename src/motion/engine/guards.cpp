@@ -128,7 +128,9 @@ void Guards::watch_slip(std::size_t joint) {
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
-    if (!zero && curve(1) <= curve.floor()) zero = 1;
+    // A zero beyond the end by no more than the rounding of the time is at the end.
+    const double late = segment_.to_the_end ? 64 * rounding * std::fabs(segment_.end) / segment_.h : 0;
+    if (!zero && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;
     // A slip that only touches zero counts at its lowest point.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
@@ -166,9 +168,9 @@ void Guards::watch_release(std::size_t joint) {
         if (std::isinf(most[0])) continue;  // the backward side of a freewheel
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
-            return of_.balances.on_stretch(segment_, x,
-                                           between ? just_beside(mechanics_, at, joint, side, beside_zero, beside) : at,
-                                           now_.mode, frame_, found);
+            return of_.balances.on_stretch(
+                segment_, x, between ? just_beside(mechanics_, at, joint, {side, side, 0, beside_zero}, beside) : at,
+                now_.mode, frame_, found);
         };
         if (between) {
             for (std::size_t j = 0; j < node_count; ++j) {

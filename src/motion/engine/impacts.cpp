@@ -92,12 +92,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     if (rests) {
         velocity(0);
         conditions_->forget();
-        if (rest > 0 && now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end)) {
-            std::vector<double> rates(mechanics_.states());
-            mechanics_.rates(now_.here(), rates.data(), &now_.mode);
-            for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
-            now_.t = now_.t.later(rest);
-        }
+        wait(rest);
     }
     leave_walls();
     if (rests) {

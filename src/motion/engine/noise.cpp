@@ -45,6 +45,7 @@ double Noise::clear(double tolerance) const {
 bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes,
                   Proofs& proofs) {
     constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
+    constexpr double of_numbers = 64 * rounding;
     std::vector<double> known;
     const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
     bool any = false;
@@ -71,22 +72,6 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             if (known.empty()) known = proofs.roundings(s, mode);
             return tail <= few_roundings * known[i] && noise < 2 * tail;
         };
-        if (!(tail <= most)) {
-            if (is_rounding()) noise = std::max(2 * tail, known[i]), any = true;
-            continue;
-        }
-        if (noise > 0 && tail <= varies * noise) {
-            any = any || 2 * tail > noise;
-            noise = std::max(noise, 2 * tail);
-            continue;
-        }
-        if (before.from != s.start.hi || !(s.h < 0.95 * before.h) || !(tail > stays * before.tail)) continue;
-        // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
-        // like the greatest value so far.
-        if (tail <= rounding * ever || is_rounding()) {
-            noise = std::max(2 * tail, known.empty() ? 0 : known[i]), any = true;
-            continue;
-        }
         const auto here = [&](double t) {
             s.state(s.start.until(t) / s.h - 1, y);
             const Moment at{t, Side::at, y};
@@ -101,6 +86,34 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             mechanics_.torques(at, mode, belts, loads, torques);
             return torques[i];
         };
+        const bool stalls = before.from == s.start.hi && s.h < 0.95 * before.h && tail > stays * before.tail;
+        // A function that is not a formula may calculate with numbers about 1, however small the motion is, and then
+        // rounds in steps of that size everywhere.
+        const auto is_hidden = [&] {
+            if (!stalls || tail > of_numbers || noise >= 2 * tail) return false;
+            return tail <= rounding ||
+                   roughness(here, {s.time(-0.9), s.time(-0.2), s.time(0.5)}, 0.4 * s.h).usual > alike * tail;
+        };
+        if (!(tail <= most)) {
+            if (is_rounding()) {
+                noise = std::max(2 * tail, known[i]), any = true;
+            } else if (is_hidden()) {
+                noise = above * tail, any = true;
+            }
+            continue;
+        }
+        if (noise > 0 && tail <= varies * noise) {
+            any = any || 2 * tail > noise;
+            noise = std::max(noise, 2 * tail);
+            continue;
+        }
+        if (!stalls) continue;
+        // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
+        // like the greatest value so far.
+        if (tail <= rounding * ever || is_rounding()) {
+            noise = std::max(2 * tail, known.empty() ? 0 : known[i]), any = true;
+            continue;
+        }
         const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
         if (!(rough.usual > alike * tail)) continue;
         noise = above * std::max(tail, rough.most);

@@ -238,7 +238,8 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         const std::optional<double> known = sampled.at(i, x);
         row.y = {y[i], y[n() + i]};
         row.torque = known ? *known : mechanics_.load(i, at);
-        row.friction = friction(now, i, at, balance_);
+        const double by_load = held_by_load(now, i, at, balance_);
+        row.torque += by_load, row.friction = friction(now, i, at, balance_) - by_load;
         row.damping = problem_.system.joints[i].damping;
         for_each_column<body_columns>(put_column);
     }
@@ -250,7 +251,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         const bool kept = now.mode.rigid[j] != 0;  // rigid joints keep their angle exactly
         row.y = {kept ? now.rigid_at[j] : mechanics_.angle(j, y), kept ? 0 : mechanics_.velocity(j, y)};
         row.torque = torque;
-        row.friction = friction(now, j, at, balance_);
+        row.friction = friction(now, j, at, balance_) - held_by_load(now, j, at, balance_);
         row.damping = problem_.system.joints[j].damping;
         for_each_column<link_columns>(put_column);
     }
@@ -273,6 +274,15 @@ double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, c
         return now.mode.leans[joint] != 0 && now.mode.leans[joint] * held <= 0 ? 0.0 : held;
     }
     return mechanics_.friction(joint, at, now.mode, mechanics_.belt(joint, at.t, at.side));
+}
+
+/// Where a load that jumps holds a joint together with friction, it has some value between both sides: what is beyond
+/// the limit of friction is the load's.
+double Recorder::held_by_load(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const {
+    if (!now.mode.holds(joint) || now.mode.friction[joint].beside == 0) return 0;
+    const double held = balance.holding[joint];
+    const double most = mechanics_.holding(joint, held > 0 ? Motion::backward : Motion::forward, at);
+    return std::fabs(held) > most ? held - std::copysign(most, held) : 0;
 }
 
 void Recorder::keep(const Now& now, const Segment& segment, double length, double longest_delay) {

@@ -80,6 +80,8 @@ private:
     /// Writes the row at the point x of the segment; x = -2 means the present.
     bool put_row(const Stretch& of, double t, double x);
     [[nodiscard]] double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
+    [[nodiscard]] double held_by_load(const Now& now, std::size_t joint, const Moment& at,
+                                      const Balance& balance) const;
     std::vector<Kept::Acting> acting(const Now& now, const Segment& segment);
     void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const;
     void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting);

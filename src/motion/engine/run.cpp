@@ -141,6 +141,7 @@ void Engine::run() {
         }
         alive = advance();
     }
+    if (alive) last_instant();
     finish();
 }
 

@@ -41,18 +41,24 @@ std::vector<double> Slides::Sides::mixed() const {
 Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     const Which before = std::exchange(function.sliding().asked, which);
-    std::vector<double> loads, torques;
+    std::vector<double> loads, torques, belts(mechanics_.joints());
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, at.t, at.side);
     mechanics_.loads_of_time(at.t, at.side, loads);
-    mechanics_.torques(at, mode_, std::vector<double>(mechanics_.joints()), loads, torques);
+    mechanics_.torques(at, mode_, belts, loads, torques);
     const Frame& frame = frames_.of(mode_);
-    std::vector<double> of_group(frame.groups());
+    std::vector<double> of_group(frame.groups()), offsets(n);
+    if (mechanics_.has_belts()) {
+        for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mode_.holds(j) ? belt_rate(j, at) : 0;
+        frame.offsets(belts, mode_, offsets);
+    }
     Side side;
     side.rates.assign(at.y.size(), 0);
     for (std::size_t i = 0; i < n; ++i) {
-        for (const auto& [group, by] : frame.bodies[i]) of_group[group] += by * torques[i];
+        const double own = torques[i] - mechanics_.system().bodies[i].inertia * offsets[i];
+        for (const auto& [group, by] : frame.bodies[i]) of_group[group] += by * own;
     }
     for (std::size_t i = 0; i < n; ++i) {
-        side.rates[i] = at.y[n + i];
+        side.rates[i] = at.y[n + i], side.rates[n + i] = offsets[i];
         for (const auto& [group, by] : frame.bodies[i]) {
             side.rates[n + i] += by * (of_group[group] / frame.inertia[group]);
         }
@@ -61,6 +67,11 @@ Slides::Side Slides::on(Piecewise& function, Which which, const Moment& at) cons
     function.sliding().asked = before;
     std::tie(side.margin, side.rate) = function.margin(at, side.rates);
     return side;
+}
+
+double Slides::belt_rate(std::size_t joint, const Moment& at) const {
+    constexpr double stretch = 1e-3;  // in time units of the motion
+    return mechanics_.belt_slope(joint, towards(at.t, at.side), stretch * unit_).rate;
 }
 
 /// The share of the load from beyond. A small feedback returns the motion to the surface, from which rounding moves it.
@@ -141,7 +152,7 @@ std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, con
         if (!sides || !sides->drive_back()) continue;
         if (!holds) return sides;
         const std::vector<double> mixed = sides->mixed();
-        double slip = 0, across = 0;
+        double slip = -belt_rate(*of.joint, now.here()), across = 0;
         for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
             const std::size_t v = mechanics_.bodies() + body;
             slip += by * mixed[v], across += std::fabs(by * (sides->own.rates[v] - sides->beyond.rates[v]));
@@ -154,7 +165,7 @@ std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, con
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, double jump, Now& now,
                                            const std::vector<double>& rates) {
     constexpr std::size_t most = 2;  // evaluating one slide evaluates the others
-    if (mechanics_.has_belts() || sliding_.size() >= most) return {};
+    if (sliding_.size() >= most) return {};
     auto owner = owner_of(function, now.t.hi);
     if (!owner) return {};
     owner->jump = jump;

@@ -61,6 +61,8 @@ private:
         [[nodiscard]] std::vector<double> mixed() const;
     };
     [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
+    /// The acceleration of the belt of a joint, from here on.
+    [[nodiscard]] double belt_rate(std::size_t joint, const Moment& at) const;
 
     Mechanics& mechanics_;
     Frames& frames_;

@@ -111,6 +111,25 @@ bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& las
     return came_from_[event] * (later(step) - later(-step)) < -watches_[event].rounded;
 }
 
+std::vector<std::size_t> UserEvents::passing(const Now& now, const Segment& last, double h, Balances& balances,
+                                             const Frame& frame) {
+    constexpr double ulps = 1 + 4 * rounding;
+    std::vector<std::size_t> events;
+    came_from_.clear();
+    for (const Watch& watch : watches_) came_from_.push_back(watch.half);
+    for (std::size_t e = 0; e < watches_.size(); ++e) {
+        const Half half = watches_[e].half;
+        const bool wanted = wanted_[e].direction == model::Crossing::both ||
+                            (half < 0) == (wanted_[e].direction == model::Crossing::up);
+        if (half == 0 || !wanted) continue;
+        const double own = value(e, now.here());
+        const double soon = value(e, {now.t.hi * ulps, Side::at, now.y});
+        const double rounded = std::fabs(soon - own) + 4 * rounding_of(e, now) + watches_[e].rounded;
+        if (std::fabs(own) <= rounded && passes_on(e, now, last, h, balances, frame)) events.push_back(e);
+    }
+    return events;
+}
+
 void UserEvents::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told,
                                  const Now& now, const Segment& last, double h, Balances& balances,
                                  const Frame& frame) {

@@ -33,6 +33,9 @@ public:
     /// ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges);
 
+    /// Returns those that pass zero at the present, but for rounding.
+    [[nodiscard]] std::vector<std::size_t> passing(const Now& now, const Segment& last, double h, Balances& balances,
+                                                   const Frame& frame);
     [[nodiscard]] std::vector<double> values(const Moment& at) const;
     /// Prepares for the actions of these events.
     void pass(const std::vector<std::size_t>& events);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace dinal::motion::rk4 {
 
@@ -70,10 +71,24 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
     }
     if (outcome_ == model::Outcome::chattering) contact_.forget_chatter();
     if (outcome_ == model::Outcome::reached_end && last_step == steps_.count) {
+        stop_at_end();
         rows_standing_until(model::never);
         if (contact_.finish()) outcome_ = model::Outcome::stuck_at_end;
     }
     return outcome_;
+}
+
+/// A stop that the rounding of the time puts behind the end is at the end.
+void Rk4Engine::stop_at_end() {
+    constexpr double few_ulps = 64 * std::numeric_limits<double>::epsilon();
+    if (!contact_.stuck() && !contact_.passes() && contact_.phase() != LoneContact::Phase::arrived) {
+        const double slower = -model::sign_of(contact_.motion()) * acceleration_at(y_, M_);
+        if (std::fabs(y_.velocity) <= slower * few_ulps * std::fabs(t_)) {
+            y_.velocity = 0;
+            contact_.arrive();
+        }
+    }
+    if (contact_.phase() == LoneContact::Phase::arrived) decide();
 }
 
 void Rk4Engine::begin_at(const Rk4Checkpoint& from) {

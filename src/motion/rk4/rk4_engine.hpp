@@ -91,6 +91,7 @@ private:
         }
     }
     [[nodiscard]] LoneContact::Moment moment() const { return {t_, y_.theta, M_}; }
+    void stop_at_end();
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
         y_.theta = contact_.place_at_stop(moment());

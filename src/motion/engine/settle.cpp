@@ -1,0 +1,120 @@
+// Rest on a surface on which a load jumps: a body that dry friction stops on either side of it, and that the load
+// drives back each time, passes it ever faster, and comes to rest on it.
+#include <algorithm>
+#include <cmath>
+
+#include "motion/engine/engine.hpp"
+
+namespace dinal::motion::engine {
+
+using model::Motion;
+
+namespace {
+
+// Of the pace: torques hardly change in that time, and passages that are far shorter are lost in the rounding of
+// angles.
+constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
+constexpr double of_rounding = 64 * rounding;
+
+}  // namespace
+
+/// A load was crossed to and fro. Where the passages to come are next to nothing, the body rests.
+Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
+    std::size_t joint = mechanics_.joints();
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        mechanics_.loads()[j].for_each_piecewise(now_.t.hi, [&](Piecewise& each) {
+            if (&each == back.function) joint = j;
+        });
+    }
+    if (joint == mechanics_.joints() || !now_.rubs(joint) || mechanics_.has_belt(joint) || now_.mode.leans[joint] != 0)
+        return Settles::no;
+    const double speed = now_.slip(mechanics_, joint);
+    if (speed == 0) return Settles::no;
+    Now still = now_;
+    const Impulses::Thrown thrown = impulses_.along(joint, now_);
+    Impulses::apply(thrown, 0, still);
+    const double size = std::fabs(mechanics_.angle(joint, now_.y));
+    const double far = std::max(of_rounding * size, std::fabs(speed) * back.since / 16);
+    const auto passages = next_passages(joint, still, speed, far);
+    if (!passages || !put_on_surface(back, joint, still, far, speed, passages->all)) return Settles::no;
+    const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
+    const bool seen = passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > of_rounding * size;
+    if (seen && passages->all > last_passages * pace) return Settles::soon;
+    recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
+    const Motion way = model::motion_of(speed);
+    now_.y = still.y, now_.low = still.low;
+    wait(passages->all);
+    now_.mode.friction[joint].leaving = false;
+    contacts_.of[joint].arrived = way;
+    conditions_->forget();
+    return Settles::now;
+}
+
+/// Returns the duration of the next passage to and fro, and of all, from this speed at the surface, under torques that
+/// stay as they are; none if they do not end there. `still`: the joint stands on the surface; so far from it the
+/// torques are asked.
+std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const Now& still, double speed, double far) {
+    const Motion ahead = model::motion_of(speed), behind = model::motion_of(-speed);
+    const auto back_in = [&](Motion side, Motion way) {
+        Mode mode = now_.mode;
+        Slipping& how = mode.friction[joint];
+        how.way = way, how.leaving = how.riding = false;
+        std::vector<double> y;
+        const Moment at = just_beside(mechanics_, still.here(), joint, {side, way, far}, y);
+        Balance found;
+        const bool good = balances_->at_present(at, still, mode, Frame(problem_.system, mode), segment_, found);
+        return good ? -model::sign_of(side) * joint_at(joint).sum(found.accelerations) : 0;
+    };
+    double leg = 0, v = std::fabs(speed);
+    for (const Motion side : {ahead, behind}) {
+        const double out = back_in(side, side), back = back_in(side, side == ahead ? behind : ahead);
+        if (!(out > 0) || !(back > 0)) return {};
+        const double slower = std::sqrt(back / out);
+        leg += v * (1 / out + slower / back);
+        v *= slower;
+    }
+    const double kept = v / std::fabs(speed);
+    if (!(kept < 1)) return {};
+    return Passages{leg, leg / (1 - kept)};
+}
+
+/// Moves the joint to where the margin of the condition is 0 to the letter. Returns false if the surface moves on while
+/// the joint stands.
+bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
+                            double speed, double later) {
+    constexpr double hardly = 1e-3;
+    const auto margin = [&](double t, const std::vector<double>& y) {
+        std::vector<double> margins;
+        back.function->margins({t, Side::at, y}, margins);
+        return margins[back.condition];
+    };
+    const model::Weight& first = joint_at(joint).of.front();
+    double slope = 0;
+    for (int i = 0; i < 2; ++i) {
+        std::vector<double> beside = still.y;
+        beside[first.body] += far;
+        const double here = margin(now_.t.hi, still.y);
+        slope = (margin(now_.t.hi, beside) - here) / far;
+        if (here == 0) break;
+        still.y[first.body] -= here / slope;
+        still.low[first.body] = 0;
+    }
+    std::vector<double> then = still.y, rates(mechanics_.states());
+    mechanics_.rates(still.here(), rates.data(), &still.mode);
+    for (std::size_t i = 0; i < n(); ++i) then[i] += later * still.y[n() + i];
+    for (std::size_t k = 0; k < rates.size(); ++k) then[2 * n() + k] += later * rates[k];
+    const double moved = margin(now_.t.after(later), then) - margin(now_.t.hi, still.y);
+    return std::fabs(moved) <= hardly * std::fabs(slope * speed * later) + of_rounding * std::fabs(slope * far);
+}
+
+/// One joint is at rest, and nothing happens for this short time.
+void Engine::wait(double rest) {
+    if (!(rest > 0) || !(now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end))) return;
+    std::vector<double> rates(mechanics_.states());
+    mechanics_.rates(now_.here(), rates.data(), &now_.mode);
+    for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
+    for (std::size_t i = 0; i < n(); ++i) now_.y[i] += rest * now_.y[n() + i];
+    now_.t = now_.t.later(rest);
+}
+
+}  // namespace dinal::motion::engine
