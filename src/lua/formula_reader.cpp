@@ -184,6 +184,11 @@ struct Frame {
     int base = 0, results = 1;
 };
 
+/// Why a function is not read.
+struct Obstacle {
+    std::string why;
+};
+
 /// A place in the code that is being followed, and what is known there.
 struct Way {
     std::vector<Frame> frames;
@@ -191,7 +196,10 @@ struct Way {
     int top = 0;         ///< behind the values of an open list
     int arguments = -1;  ///< those left of a call of math.max that is half done
 
-    Known& operator[](int i) { return registers[static_cast<std::size_t>(i)]; }
+    Known& operator[](int i) {
+        if (i < 0 || static_cast<std::size_t>(i) >= registers.size()) throw Obstacle{"its code is of another Lua"};
+        return registers[static_cast<std::size_t>(i)];
+    }
     /// Numbers that grow on each way, whichever that is: within a loop round by round, in a call before behind it.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> place() const {
         std::vector<std::pair<std::size_t, std::size_t>> numbers;
@@ -229,11 +237,6 @@ struct Waiting {
     Way way;
     std::vector<Loose> loose;
     bool settled = false;  ///< nothing will be joined with it
-};
-
-/// Why a function is not read.
-struct Obstacle {
-    std::string why;
 };
 
 // Registers of the formula: as many as Lua has, and these, which are put behind them in the end.
