@@ -184,6 +184,11 @@ struct Frame {
     int base = 0, results = 1;
 };
 
+/// The reason why a function is not read.
+struct Obstacle {
+    std::string why;
+};
+
 /// A branch of execution: its position in the code, and what is known there.
 struct Way {
     std::vector<Frame> frames;
@@ -191,7 +196,10 @@ struct Way {
     int top = 0;         ///< end of the values of an open list; 0: none
     int arguments = -1;  ///< number of arguments left of an unfinished call of math.max; -1: none
 
-    Known& operator[](int i) { return registers[static_cast<std::size_t>(i)]; }
+    Known& operator[](int i) {
+        if (i < 0 || static_cast<std::size_t>(i) >= registers.size()) throw Obstacle{"its code is of another Lua"};
+        return registers[static_cast<std::size_t>(i)];
+    }
     /// Numbers that increase along every branch, to order positions: rounds within a loop, and instructions within a
     /// call before those after it.
     [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> place() const {
@@ -230,11 +238,6 @@ struct Waiting {
     Way way;
     std::vector<Loose> loose;
     bool settled = false;  ///< whether no other branch will be merged with it
-};
-
-/// The reason why a function is not read.
-struct Obstacle {
-    std::string why;
 };
 
 // Registers of the formula: those of Lua, and the following kinds, which are numbered after them at the end.

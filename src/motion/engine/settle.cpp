@@ -43,7 +43,10 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
     const Motion way = model::motion_of(speed);
     now_.y = still.y, now_.low = still.low;
-    wait(passages->all);
+    const auto velocities = now_.y.begin() + static_cast<std::ptrdiff_t>(n());
+    // Others would go on meanwhile: then it rests a little early.
+    if (std::all_of(velocities, velocities + static_cast<std::ptrdiff_t>(n()), [](double v) { return v == 0; }))
+        wait(passages->all);
     now_.mode.friction[joint].leaving = false;
     contacts_.of[joint].arrived = way;
     conditions_->forget();
@@ -107,13 +110,12 @@ bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t j
     return std::fabs(moved) <= hardly * std::fabs(slope * speed * later) + of_rounding * std::fabs(slope * far);
 }
 
-/// One joint is at rest, and nothing happens for this short time.
+/// Nothing but users' states changes for this short time.
 void Engine::wait(double rest) {
     if (!(rest > 0) || !(now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end))) return;
     std::vector<double> rates(mechanics_.states());
     mechanics_.rates(now_.here(), rates.data(), &now_.mode);
     for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
-    for (std::size_t i = 0; i < n(); ++i) now_.y[i] += rest * now_.y[n() + i];
     now_.t = now_.t.later(rest);
 }
 
