@@ -226,7 +226,8 @@ local questions = {
         return each(integrator, "spectral exact rk4 dopri5 dinal1989", function(all, name)
             local steps = name == "rk4" or name == "dinal1989"
             local chosen = all[name] { h = steps and 0.01 or nil, tolerance = name == "dopri5" and 1e-9 or nil }
-            return rows(way.part(simulated(way, kind, { integrator = chosen })))
+            local run = way.part(simulated(way, kind, { integrator = chosen }))
+            return merged(rows(run), { between = { run:at(run.t_end / 2.7) } })
         end)
     end,
     continue = function(way, kind)
