@@ -3,43 +3,68 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace dinal::motion::engine {
 
 using model::Joint;
 using model::Motion;
 
+/// In this order they are watched, for one joint after the other, and go if they come to the same place. Conditions and
+/// the user's events come last, because they wait for a standstill beside them.
+const std::array<Guards::Row, 11> Guards::table{{
+    {Per::joint, By::release, &Guards::watch_release},
+    {Per::joint, By::slip, &Guards::watch_slip},
+    {Per::joint, By::corner, &Guards::watch_corner},
+    {Per::joint, By::wall, &Guards::watch_wall},
+    {Per::joint, By::stop, &Guards::watch_stop},
+    {Per::joint, By::kink, &Guards::watch_normal},
+    {Per::joint, By::kink, &Guards::watch_bristles},
+    {Per::slider, By::slider, &Guards::watch_slider},
+    {Per::load, By::relay, &Guards::watch_relays},
+    {Per::motion, By::condition, &Guards::watch_conditions},
+    {Per::motion, By::user, &Guards::watch_users},
+}};
+
+std::size_t Guards::count(Per per) const {
+    switch (per) {
+        case Per::joint:
+        case Per::load:
+            return mechanics_.joints();
+        case Per::slider:
+            return now_.mode.sliders.size();
+        case Per::motion:
+            return 1;
+    }
+    return 0;
+}
+
 Ending Guards::first() {
     for (Contacts::Of& each : of_.contacts.of) each.crept = false;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        if (now_.mode.holds(j) && now_.mode.rigid[j] == 0) watch_release(j);
-        if (now_.rubs(j) && now_.mode.friction[j].way != Motion::stuck && !now_.mode.friction[j].riding) {
-            watch_slip(j);
-            watch_corner(j);
+    for (const Per per : {Per::joint, Per::slider, Per::load, Per::motion}) {
+        for (which_ = 0; which_ < count(per); ++which_) {
+            for (const Row& row : table) {
+                if (row.per != per) continue;
+                by_ = row.by;
+                (this->*row.watch)(which_);
+            }
         }
-        const auto& [walls, stops] = std::tie(joint_at(j).walls, joint_at(j).stops);
-        if (walls && now_.mode.leans[j] == 0) watch_walls(j, *walls, By::wall);
-        if (stops) watch_stop(j);
-        if (mechanics_.has_normal(j) || (mechanics_.may_open(j) && !now_.rubs(j))) watch_normal(j);
-        if (mechanics_.bristle(j) != nullptr) watch_bristles(j);
     }
-    for (std::size_t s = 0; s < now_.mode.sliders.size(); ++s) {
-        // The slip of a contact that others hold is rounding.
-        if (!frame_.keeps(mechanics_.sliders()[s].joint)) watch_slider(s);
-    }
-    watch_relays();
     return ending_;
 }
 
-void Guards::see(std::optional<double> x, By by, std::size_t which, int side) {
-    if (x && *x < ending_.x) ending_ = {*x, by, which, side};
+void Guards::see(std::optional<double> x, int side) {
+    if (x && *x < ending_.x) ending_ = {*x, by_, which_, side};
 }
 
-void Guards::watch(const Series& left, double floor, bool zero, By by, std::size_t which, int side) {
+void Guards::watch(const Series& left, double floor, bool zero, int side) {
     cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
     curve.raise_floor(floor);
-    see(cheb::first_below(curve, -1, zero), by, which, side);
+    see(cheb::first_below(curve, -1, zero), side);
+}
+
+bool Guards::slides(std::size_t joint) const {
+    const Slipping& how = now_.mode.friction[joint];
+    return now_.rubs(joint) && how.way != Motion::stuck && !how.riding;
 }
 
 /// Returns the size of the velocities whose difference is the slip of a joint.
@@ -50,6 +75,7 @@ double Guards::fastest(std::size_t joint) const {
 }
 
 void Guards::watch_slip(std::size_t joint) {
+    if (!slides(joint)) return;
     const Joint& own = joint_at(joint);
     const Slipping& how = now_.mode.friction[joint];
     const double sign = model::sign_of(how.way), torques = of_.sizes.on(own);
@@ -77,7 +103,7 @@ void Guards::watch_slip(std::size_t joint) {
     const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
     if (crept) {
         of_.contacts.of[joint].crept = true;
-        if (!how.leaving && ending_.by == By::nobody) ending_ = {1, By::slip, joint};
+        if (!how.leaving && ending_.by == By::nobody) ending_ = {1, by_, joint};
         if (!how.leaving) return;
     }
     if (!how.leaving && stays_above_zero(sign, series, fastest)) return;
@@ -108,10 +134,9 @@ void Guards::watch_slip(std::size_t joint) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
     }
     if (!zero || *zero > ending_.x) return;
-    ending_ = {*zero, By::slip, joint};
-    if (!how.leaving || *zero > -1) return;
-    ending_.by = By::stays;
-    stay_.push_back(joint);
+    const bool stays = how.leaving && *zero <= -1;
+    ending_ = {*zero, stays ? By::stays : by_, joint};
+    if (stays) stay_.push_back(joint);
 }
 
 /// Returns whether the torques at a joint are known as well as their rounding: it has no belt, and no function of its
@@ -122,6 +147,7 @@ bool Guards::may_creep(std::size_t joint) const {
 
 /// The torque that holds a joint passes its limit.
 void Guards::watch_release(std::size_t joint) {
+    if (!now_.mode.holds(joint) || now_.mode.rigid[joint] != 0) return;
     const double beside_zero = now_.mode.friction[joint].beside;
     const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
@@ -186,7 +212,7 @@ void Guards::watch_release(std::size_t joint) {
         // A jump that was passed over may have taken it far beyond.
         auto x = values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, false, touches);
         if (x && touch) x = first_true(lets_go, *touch);
-        if (x && segment_.time(*x) < segment_.end) see(x, By::release, joint, static_cast<int>(side));
+        if (x && segment_.time(*x) < segment_.end) see(x, static_cast<int>(side));
     }
 }
 
@@ -211,7 +237,12 @@ Nodes Guards::limit(std::size_t joint, Motion side) const {
     return most;
 }
 
-void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
+void Guards::watch_wall(std::size_t joint) {
+    const auto& walls = joint_at(joint).walls;
+    if (walls && now_.mode.leans[joint] == 0) watch_walls(joint, *walls);
+}
+
+void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
     for (const int wall : {1, -1}) {
         const double place = walls.at(wall);
         if (!std::isfinite(place)) continue;
@@ -226,22 +257,23 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls, By by) {
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
         Series left = cheb::fit(change);
         if (!leaving) left[0] += begin;
-        watch(left, 64 * rounding * far, leaving, by, joint, wall);
+        watch(left, 64 * rounding * far, leaving, wall);
     }
 }
 
 /// An elastic wall is pressed while its depth and its torque are both positive. Before it is, the depth is, or, where
 /// it was left before the motion came back to its place, the torque will be.
 void Guards::watch_stop(std::size_t joint) {
+    if (!joint_at(joint).stops) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
     const double begin = mechanics_.angle(joint, segment_.moment(0, point_).y);
     const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
-    if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops, By::stop);
+    if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops);
     if (pressed == 0) {  // it may come to the other wall before
         model::Walls other = stops;
         (deep > 0 ? other.upper : other.lower) = deep * model::never;
-        watch_walls(joint, other, By::stop);
+        watch_walls(joint, other);
     }
     const auto value = [&](const Moment& at) {
         const double q = mechanics_.angle(joint, at.y);
@@ -250,24 +282,24 @@ void Guards::watch_stop(std::size_t joint) {
     };
     Half half = pressed != 0 ? 1 : -1;
     const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
-    see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), By::stop, joint,
-        pressed != 0 ? 0 : deep);
+    see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), pressed != 0 ? 0 : deep);
 }
 
 /// A slider that sticks slides where its spring comes to its limit; one that slides sticks where the slip turns.
 void Guards::watch_slider(std::size_t slider) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
+    if (frame_.keeps(own.joint)) return;  // the slip of a contact that others hold is rounding
     Half half = 1;
     if (now_.mode.sliders[slider] != Motion::stuck) {
         half = static_cast<int>(now_.mode.sliders[slider]);
-        see(slip_leaves(own.joint, half), By::slider, slider, static_cast<int>(Motion::stuck));
+        see(slip_leaves(own.joint, half), static_cast<int>(Motion::stuck));
         return;
     }
     for (const Motion way : {Motion::forward, Motion::backward}) {
         const auto left = [&](const Moment& at) {
             return own.limit - model::sign_of(way) * own.stiffness * at.y[own.bend];
         };
-        see(leaves(segment_.at_nodes(left, point_), left, half), By::slider, slider, static_cast<int>(way));
+        see(leaves(segment_.at_nodes(left, point_), left, half), static_cast<int>(way));
     }
 }
 
@@ -276,7 +308,7 @@ void Guards::watch_corner(std::size_t joint) {
     const Joint& own = mechanics_.system().joints[joint];
     const model::Friction& law = own.friction.law;
     const Slipping& how = now_.mode.friction[joint];
-    if (law.ranges() < 2 || own.friction.function != nullptr || now_.mode.leans[joint] != 0) return;
+    if (!slides(joint) || law.ranges() < 2 || own.friction.function != nullptr || now_.mode.leans[joint] != 0) return;
     const model::SpeedRange range = law.range(how.range);
     const double sign = model::sign_of(how.way);
     Series series = cheb::fit(mechanics_.slips(joint, segment_.y, segment_.belts[joint]));
@@ -288,7 +320,7 @@ void Guards::watch_corner(std::size_t joint) {
         for (double& c : left) c *= -side;
         left[0] += side * corner;
         const bool there = of_.contacts.of[joint].edge == side;
-        watch(left, 16 * rounding * fastest(joint), there, By::corner, joint, side);
+        watch(left, 16 * rounding * fastest(joint), there, side);
     }
 }
 
@@ -302,15 +334,17 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
 
 /// The rate of bristles has a corner where the slip is 0: a stretch ends there.
 void Guards::watch_bristles(std::size_t joint) {
+    if (mechanics_.bristle(joint) == nullptr) return;
     Half& half = of_.normal_halves[joint];
     const auto x = slip_leaves(joint, half);
     if (!x || *x >= ending_.x) return;
-    if (*x > -1) see(x, By::kink, joint);
+    if (*x > -1) see(x);
     half = -half;
 }
 
 /// A normal load that passes zero ends a stretch: what is negative counts as none.
 void Guards::watch_normal(std::size_t joint) {
+    if (!mechanics_.has_normal(joint) && (!mechanics_.may_open(joint) || now_.rubs(joint))) return;
     const auto pressing = [&](const Moment& at) { return mechanics_.pressing(joint, at); };
     const Nodes values = segment_.at_nodes(pressing, point_);
     if (mechanics_.rubs(joint) && !now_.rubs(joint)) {
@@ -319,14 +353,13 @@ void Guards::watch_normal(std::size_t joint) {
         if (presses == values.end()) return;
         const auto exact = segment_.anywhere(pressing, point_);
         see(first_true([&](double x) { return exact(x) > 0; },
-                       cheb::nodes[static_cast<std::size_t>(presses - values.begin())]),
-            By::kink, joint);
+                       cheb::nodes[static_cast<std::size_t>(presses - values.begin())]));
         return;
     }
     Half& half = of_.normal_halves[joint];
     const auto x = leaves(values, pressing, half);
     if (!x || *x >= ending_.x) return;
-    see(x, By::kink, joint);
+    see(x);
     half = -half;
 }
 
@@ -343,20 +376,28 @@ std::optional<double> Guards::switches(double sign, double level, std::size_t k)
     return values[0] < 0 ? -1 : Watched(values, exact, 0, series).leaves(half, -1);
 }
 
-void Guards::watch_relays() {
-    for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
-        const Signal& load = mechanics_.loads()[i];
-        for (std::size_t r = 0; r < load.relays(); ++r) {
-            if (const auto of = load.switching(r); of.place) {
-                see(switches(of.sign, of.level, *of.place), By::relay, i, static_cast<int>(r));
-                continue;
-            }
-            const auto left = [&](const Moment& at) { return load.until_switch(r, at); };
-            const Nodes values = segment_.at_nodes(left, point_);
-            Half half = 1;
-            see(values[0] < 0 ? -1 : leaves(values, left, half), By::relay, i, static_cast<int>(r));
+void Guards::watch_relays(std::size_t load) {
+    const Signal& of = mechanics_.loads()[load];
+    for (std::size_t r = 0; r < of.relays(); ++r) {
+        if (const auto at = of.switching(r); at.place) {
+            see(switches(at.sign, at.level, *at.place), static_cast<int>(r));
+            continue;
         }
+        const auto left = [&](const Moment& at) { return of.until_switch(r, at); };
+        const Nodes values = segment_.at_nodes(left, point_);
+        Half half = 1;
+        see(values[0] < 0 ? -1 : leaves(values, left, half), static_cast<int>(r));
     }
+}
+
+void Guards::watch_conditions(std::size_t /*motion*/) {
+    if (of_.conditions.any()) of_.conditions.watch(segment_, now_.y, now_.t.hi, ending_);
+}
+
+void Guards::watch_users(std::size_t /*motion*/) {
+    const UserEvents::Seen seen = of_.users.watch(segment_, ending_);
+    good_ = good_ && seen.good;
+    thrown_back_ = seen.again;
 }
 
 }  // namespace dinal::motion::engine

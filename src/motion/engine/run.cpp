@@ -251,17 +251,14 @@ bool Engine::belt_jump_found() {
 
 /// Searches the stretch for what happens first.
 Ending Engine::watch(const Frame& frame) {
-    const Guards::Of of{mechanics_, segment_, frame,      now_,      walls_,
-                        sizes_,     *solver_, *balances_, contacts_, normal_halves_};
+    const Guards::Of of{mechanics_, segment_,   frame,     now_,         walls_, sizes_,
+                        *solver_,   *balances_, contacts_, *conditions_, users_, normal_halves_};
     Guards guards(of);
     Ending ending = guards.first();
     if (!guards.good()) fail(Outcome::excitation_not_finite);
     for (const std::size_t joint : guards.stay()) hold_again(joint, sizes_.on(joint_at(joint)));
-    if (conditions_->any()) conditions_->watch(segment_, now_.y, now_.t.hi, ending);
-    const UserEvents::Seen seen = users_.watch(segment_, ending);
-    if (!seen.good) fail(Outcome::excitation_not_finite);
-    if (seen.again) {
-        if (!recorder_->told_user_at(now_.t.hi)) recorder_->tell_user(now_, *seen.again);
+    if (guards.thrown_back()) {
+        if (!recorder_->told_user_at(now_.t.hi)) recorder_->tell_user(now_, *guards.thrown_back());
         fail(Outcome::chattering);
     }
     if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
