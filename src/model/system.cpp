@@ -25,7 +25,11 @@ text::Expected<Oscillator> oscillator_at(const System& system, std::size_t joint
     const Joint& own = system.joints[joint];
     OscillatorParameters parameters;
     constexpr double none = 1e-100;  // inertia of a body with prescribed motion
-    parameters.inertia = system.is_link(joint) ? 1 / own.lightness(system.bodies) : system.bodies[joint].inertia;
+    double lightness = 0;            // such a body resists a link as if it were infinitely heavy
+    for (const auto& [body, by] : own.of) {
+        if (!system.bodies[body].moved) lightness += by * by / system.bodies[body].inertia;
+    }
+    parameters.inertia = !system.is_link(joint) ? system.bodies[joint].inertia : lightness > 0 ? 1 / lightness : 0;
     if (parameters.inertia == 0) parameters.inertia = none;
     parameters.stiffness = own.stiffness, parameters.damping = own.damping, parameters.units = system.units;
     parameters.spring = own.spring, parameters.walls = own.walls;

@@ -25,6 +25,7 @@ local sets = {
   { sheet = 4, draws = { 5 }, questions = "h" },                           -- periods
   { sheet = 5, draws = { 1, 2, 3, 4, 5, 6, 7 }, questions = "abcdefg", some = 4, all = 500 },
   { sheet = 6, draws = { 1, 2, 3, 4, 5 }, questions = "abcdef", some = 4, all = 500 },
+  { sheet = 7, draws = { 1, 2, 3 }, questions = "abcdef", some = 2, all = 100 },
 }
 
 --- How many values each draw of the sheet has, from a world of middles; these are, counted from 0, in `middles`.

@@ -19,7 +19,7 @@ walk.sheet("7-friction-damper", function(session)
   support.equal(steady(1.01*limit, omega).joint.status, "adheres")
   assert(steady(0.97*limit, omega).joint.stuck < 1)
 
-  local torque, peaks = vector.linspace(0.4, 1.6, 21)*given.M0, {}
+  local torque, peaks = vector.linspace(0.4, 1.6, 13)*given.M0, {}
   for i = 1, #torque do peaks[i] = session.peak(torque[i]) end
   local at = vector(peaks):argmin()
   local best = { Rd = torque[at], value = peaks[at] }
@@ -46,4 +46,4 @@ walk.sheet("7-friction-damper", function(session)
     { "7f", alone, "without the damper" },
     { "7f", alone/glued, "glued together" },
   }
-end)
+end, { 4711, 20260017 })  -- each takes seconds; draws_test.lua has other draws

@@ -246,7 +246,7 @@ test("a selection of columns can be saved, and roughness is reported", function(
     has_not(run.outcome, "rk4")
 end)
 
-test("a constant normal load multiplies Rd, and units that are powers of two change no bit", function()
+test("units that are powers of two change no bit of several bodies", function()
     local M = function(t) return 2 * math.sin(1.3 * t) end
     local function chain(scale, time)
         scale, time = scale or 1, time or 1
@@ -258,12 +258,6 @@ test("a constant normal load multiplies Rd, and units that are powers of two cha
     equal(#scaled.events, #single.events)
     equal(scaled.a.theta, single.a.theta)
     equal(scaled.b.theta, single.b.theta)
-    local function normal(load, Rd, Re)
-        return system { bodies = { a = { I = 1, k = 4, Rd = Rd, Re = Re, normal = load } } }:simulate { M = { a = M }, t_end = 20, dt = 0.25 }
-    end
-    local plain, loaded = normal(nil, 0.25, 0.5), normal(2, 0.125, 0.25)
-    equal(#plain.events, #loaded.events)
-    equal(loaded.a.theta, plain.a.theta)
 end)
 
 test("a contact between a body that a belt carries and one at rest slips, though both stick", function()
@@ -444,19 +438,6 @@ test("a body or link may be called like a field of one body, but not like a meth
     raises_here(function() return rig.damping end, "this system has no 'damping'; its bodies and links are")
     raises_here(function() rig:characteristic_torque(1) end, "needs one body, and this system has names: take one of them, such as sys.a")
     raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
-end)
-
-test("between the rows of the only body its functions get the motion by its name", function()
-    for _, method in ipairs { integrator.rk4 { h = 0.01 }, integrator.dinal1989 { h = 0.01 } } do
-        local more = { t_end = 10, integrator = method }
-        local run = system { bodies = { a = { I = 1, k = 4, Rd = 0.3 } } }
-            :simulate(merged(more, { theta0 = { a = 2 }, M = { a = function(_, _, v) return -0.1 * v.a end } }))
-        local alone = system { I = 1, k = 4, Rd = 0.3 }
-            :simulate(merged(more, { theta0 = 2, M = function(_, _, v) return -0.1 * v end }))
-        near(run.a:at(3.333), alone:at(3.333), 1e-14)
-        near(run:at(3.333).a, alone:at(3.333), 1e-14)
-        equal(#run.a:spectrum(), #alone:spectrum())
-    end
 end)
 
 finish()

@@ -36,22 +36,45 @@ local parts = {
 }
 
 test("the energy of each part of a system is its row in the energy of all", function()
-    local named = { "input", "base", "kinetic", "spring", "viscous", "dry", "belt", "impacts" }
+    local named = { "input", "base", "kinetic", "spring", "viscous", "dry", "belt", "impacts", "acts" }
+    local stored = { kinetic = true, spring = true }
     for kind, given in pairs(parts) do
         local drive = { M = { a = sine }, velocity0 = { b = 0.5 }, t_end = 12, dt = 0.1 }
         local run = pair(a, b, merged(given[1])):simulate(merged(drive, given[2]))
         local whole = run:energy()
         assert(whole.total.closure < 1e-10, kind)
+        close(whole.error, 0 * whole.error, kind)
+        local sums = {}
         for _, part in ipairs { "a", "b", "link" } do
             local own = run[part]:energy()
             for _, name in ipairs(named) do
                 local what = ("%s: %s of %s"):format(kind, name, part)
                 if whole[part][name] then close(own.total[name], whole[part][name], what) end
-                if name ~= "kinetic" and name ~= "spring" then
+                if not stored[name] then
                     close(own[name][#run], own.total[name], what .. " in the last row and in total")
                 end
+                sums[name] = (sums[name] or 0) + own.total[name]
+            end
+            if part ~= "link" then
+                for _, name in ipairs { "dry", "others" } do
+                    local halves = 0
+                    for _, half in ipairs(own.half_cycles) do halves = halves + half[name] end
+                    close(halves, own.total[name], ("%s: %s of the half cycles of %s"):format(kind, name, part))
+                end
+                assert(#own.half_cycles > 5)
             end
         end
+        for _, name in ipairs(named) do
+            local what, column = kind .. ": " .. name, whole[name]
+            if stored[name] then
+                close(column[#run] - column[1], whole.total[name], what)
+            else
+                equal(column[1], 0.0, what)
+                close(column[#run], whole.total[name], what)
+                close(sums[name], whole.total[name], what .. " of all parts")
+            end
+        end
+        has(run.a:energy(), "work of its links on it")
         assert(not kind:find "belt" or math.abs(whole.link.belt) > 0.01, kind)
         assert(kind ~= "a base" or math.abs(whole.a.base) > 0.01 and math.abs(whole.b.base) > 0.01)
         assert(not kind:find "impact" or whole.link.impacts > 0.01)

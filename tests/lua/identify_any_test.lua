@@ -96,12 +96,13 @@ test("exact data give errors of some ulps at least, and many records the coverag
         assert(fit.std_error[name] >= 1e-15 * value)
     end
     local judged, part, ratio = judge()
-    for seed = 1, 40 do
+    local records = lots(40)
+    for seed = 1, records do
         local v = run.velocity + noise(#run, 0.03, seed)
         part, ratio = judged(identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" },
             { k = 4, C = 0.1, Rd = 0.1 })
     end
-    assert(part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
+    assert(records < 40 or part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
 end)
 
 local function drive_train(Rd, k)

@@ -6,6 +6,7 @@ test("a moved end of a spring is a shaking support", function()
     local rig = system { bodies = { cam = { theta = function(t) return A * math.sin(w * t) end }, load = { I = 2, C = 0.1 } },
         links = { spring = { "load", "cam", k = 5, C = 0.3 } } }
     local run = rig:simulate { t_end = 20, velocity0 = { load = A * w } }
+    near(rig.spring.omega0, math.sqrt(5 / 2), 1e-15)
     near(run.cam.theta, A * (w * run.t):sin(), 1e-12)
     near(run.cam.velocity, A * w * (w * run.t):cos(), 1e-11)
     -- Relative to the end: x'' = -(k x + C x' + C0 (x' + v))/I + A w^2 sin.

@@ -50,7 +50,7 @@ local function with_rare_rows(options)
         { M = function(t) return 30*math.sin(2*math.pi*t) end, theta0 = 1, t_end = 1003, dt = 1.003 }, options))
 end
 
-test("pictures of a run show its motion, even with few rows", function()
+long_test("pictures of a run show its motion, even with few rows", function()
     local rare, close = with_rare_rows {}, with_rare_rows { dt = 0.01 }
     local function half_swings(run, what)
         return tonumber(description(function(file) run:plot { y = what, file = file } end):match "(%d+) half swings")

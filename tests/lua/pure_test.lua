@@ -127,18 +127,6 @@ test("a memory that start makes is new in each run, and continues in a continued
     end
 end)
 
-test("the same holds for several bodies", function()
-    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 } } }
-    local M = excitation.sampled(function(_, theta, _, _, memory)
-        memory.sum = memory.sum + 0.05 * (0.5 - theta.a)
-        return 6 * memory.sum
-    end, { every = 0.05, start = function() return { sum = 0 } end })
-    local function run(t_end) return rig:simulate { M = { a = M }, t_end = t_end, dt = 1 } end
-    local first, whole = run(5), run(10)
-    equal(last_of(run(10).a), last_of(whole.a))
-    for _ = 1, 2 do near(last_of(first:continue { t_end = 10 }.a), last_of(whole.a), 1e-9) end
-end)
-
 test("steady motions, sweeps and CSV headers include a declared memory", function()
     local M = declared(1)
     local s = spring:steady { M = M + excitation.harmonic { frequency = 0.5 }, period = 2 }

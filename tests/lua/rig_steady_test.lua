@@ -264,7 +264,7 @@ test("a parameter of a response may be called like a column that has the name of
     })
 end)
 
-test("a steady rotation is followed to where it begins to stick and slip", function()
+long_test("a steady rotation is followed to where it begins to stick and slip", function()
     local rig = system { bodies = { top = { I = 2 }, bit = { I = 0.1, C = 0.05, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.5 } } },
         links = { pipe = { "top", "bit", k = 1, C = 0.02 } } }
     local function at(p) return { M = { top = function(t, theta, velocity) return 20 * (p.speed - velocity.top) end } } end

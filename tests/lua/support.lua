@@ -15,6 +15,11 @@ function support.test(sentence, body)
     end
 end
 
+--- A test that only goes on and on, which shows a sanitizer nothing new: not run where cases by lot are few.
+function support.long_test(sentence, body)
+    if not os.getenv "DINAL_ORACLE_CASES" then support.test(sentence, body) end
+end
+
 --- To be called at the end of a test file.
 function support.finish()
     if failed > 0 then
