@@ -124,14 +124,11 @@ std::optional<std::vector<NamedNumbers>> half_cycles(const RunEnergy& own) {
 /// link may well be called belt or spring.
 int part_of_energy(lua_State* L) {
     const auto* energy = lua::test<EnergyHandle>(L, 1);
-    if (energy == nullptr || !(*energy)->run->of_all()) return 0;
-    const auto& joints = (*energy)->run->system().joints;
-    const auto named =
-        std::find_if(joints.begin(), joints.end(),
-                     [name = std::string_view(lua_tostring(L, 2))](const auto& joint) { return joint.name == name; });
-    if (named == joints.end()) return 0;
+    if (energy == nullptr || lua_type(L, 2) != LUA_TSTRING || !(*energy)->run->of_all()) return 0;
+    const auto named = (*energy)->run->system().joint_named(lua_tostring(L, 2));
+    if (!named) return 0;
     NamedNumbers numbers;
-    add_balance(numbers, (*energy)->parts[static_cast<std::size_t>(named - joints.begin())].total, true);
+    add_balance(numbers, (*energy)->parts[*named].total, true);
     lua::push_value(L, numbers);
     return 1;
 }

@@ -260,12 +260,7 @@ std::optional<std::size_t> joint_of_column(const LuaRun& run, std::string_view c
     if (!run.of_all()) return {};
     const auto& states = run.origin->drive.states;
     if (std::any_of(states.begin(), states.end(), [&](const model::OwnState& s) { return s.name == column; })) return 0;
-    const auto& joints = run.system().joints;
-    const auto is_its = [&](const model::Joint& joint) {
-        return column.starts_with(joint.name) && column.substr(joint.name.size()).starts_with('.');
-    };
-    const auto found = std::find_if(joints.begin(), joints.end(), is_its);
-    return found == joints.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - joints.begin()));
+    return run.system().joint_named(column.substr(0, column.find('.')));
 }
 
 int spectrum_of_run(lua_State* L) {

@@ -6,19 +6,21 @@
 #include <cmath>
 #include <numbers>
 
-#include "api/bind_modes.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
+#include "api/drive_options.hpp"
 #include "api/lua_run.hpp"
 #include "api/response.hpp"
 #include "api/steady_answer.hpp"
 #include "api/system_options.hpp"
 #include "lua/options.hpp"
+#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/jenkins.hpp"
+#include "motion/engine/modes.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {
@@ -122,6 +124,72 @@ std::vector<std::string> joint_names(const SystemHandle& system) {
         if (system->named && system->is_link(j) == links) names.push_back(system->joints[j].name);
     }
     return names;
+}
+
+// sys:modes{...}: eigenvalues at an equilibrium or in steady sliding.
+
+constexpr text::Option own_modes_options[] = {
+    {.name = "M",
+     .unit = "torque",
+     .otherwise = "0",
+     .meaning = "constant torques, or functions of the motion; of several bodies by body or link",
+     .object = "excitation"},
+    {.name = "belt",
+     .unit = "rad per time unit",
+     .otherwise = "0",
+     .meaning = "constant velocities of surfaces, on which contacts slide; of several by body or link",
+     .object = "excitation"},
+    {.name = "theta0",
+     .unit = "rad",
+     .otherwise = "0",
+     .meaning = "angles from which the rest is searched, and at which contacts hold that have no belt"},
+};
+constexpr auto modes_options = text::joined(own_modes_options, states_option);
+constexpr text::Call modes_call{"sys:modes", "sys:modes{ belt = 0.2 }", modes_options, true};
+
+void push_shape(lua_State* L, const model::System& system, const motion::engine::EigenMode& mode, bool quadrature) {
+    lua_newtable(L);
+    for (std::size_t i = 0; i < mode.shape.size(); ++i) {
+        const double part = quadrature ? mode.shape[i].imag() : mode.shape[i].real();
+        lua::set_number(L, system.named ? system.bodies[i].name.c_str() : "theta", part + 0.0);
+    }
+}
+
+int modes_of_system(lua_State* L) {
+    const SystemHandle handle = lua::self<SystemHandle>(L, 1, modes_call.example);
+    const model::System& system = *handle;
+    const lua::Options options(L, 2, modes_call);
+    const model::Drive drive = asked_drive(L, options, system);
+    const auto check = [&](const model::Excitation& of, const char* name) {
+        if (of.components().empty() || of.has_feedback() || of.constant_from() <= 0) return;
+        options.fail(name,
+                     fmt::format("{} must be constant, or depend on the motion alone: modes are those of a rest or of "
+                                 "an even sliding",
+                                 name));
+    };
+    for (const model::Excitation& load : drive.loads) check(load, "M");
+    for (const model::Excitation& belt : drive.belts) check(belt, "belt");
+    lua::CallState call(L);
+    name_functions(call, system, drive);
+    const auto modes = motion::engine::modes_beside(system, drive);
+    call.check();
+    if (!modes) options.fail(modes.error());
+    lua_newtable(L);
+    for (std::size_t k = 0; k < modes->size(); ++k) {
+        const auto& mode = (*modes)[k];
+        const double size = std::abs(mode.value);
+        lua_newtable(L);
+        lua::set_number(L, "re", mode.value.real() + 0.0);
+        lua::set_number(L, "im", mode.value.imag());
+        lua::set_number(L, "frequency", mode.value.imag() / (2 * std::numbers::pi));
+        lua::set_number(L, "zeta", size > 0 ? -mode.value.real() / size + 0.0 : 0);
+        push_shape(L, system, mode, false);
+        lua_setfield(L, -2, "shape");
+        push_shape(L, system, mode, true);
+        lua_setfield(L, -2, "quadrature");
+        lua_rawseti(L, -2, static_cast<lua_Integer>(k) + 1);
+    }
+    return 1;
 }
 
 constexpr lua::Member system_module_members[] = {
@@ -278,12 +346,7 @@ const char* varying_option(lua_State* L) {
 
 /// Pushes a field of a named system: a body or a link.
 int field_of_names(lua_State* L, const model::System& system, std::string_view name) {
-    const auto own =
-        std::find_if(system.joints.begin(), system.joints.end(), [&](const auto& j) { return j.name == name; });
-    if (own != system.joints.end()) {
-        return push_alone(L, fmt::format("sys.{}", name), system,
-                          static_cast<std::size_t>(own - system.joints.begin()));
-    }
+    if (const auto own = system.joint_named(name)) return push_alone(L, fmt::format("sys.{}", name), system, *own);
     const bool of_one = std::any_of(system_class.members.begin(), system_class.members.end(), [&](const auto& member) {
         return member.name == name && member.kind == lua::Kind::field && !is_of_whole(name);
     });

@@ -82,11 +82,9 @@ std::vector<std::string> body_names(const model::System& system) {
 
 std::size_t joint_named(lua_State* L, std::string_view name, const model::System& system, const char* what,
                         const lua::Class& of) {
+    if (const auto known = system.joint_named(name)) return *known;
     std::vector<std::string> own;
-    for (std::size_t j = 0; j < system.joints.size(); ++j) {
-        if (system.joints[j].name == name) return j;
-        own.push_back(system.joints[j].name);
-    }
+    for (const model::Joint& joint : system.joints) own.push_back(joint.name);
     raise_unknown_name(L, fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
                        name, own, of);
 }

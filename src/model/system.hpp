@@ -15,6 +15,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "model/drive.hpp"
@@ -128,6 +129,13 @@ struct System {
         return joints.size() == 1 && joints.front().is_plain() && !bodies.front().moved;
     }
     [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+    /// The index of the joint with this name.
+    [[nodiscard]] std::optional<std::size_t> joint_named(std::string_view name) const {
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            if (joints[j].name == name) return j;
+        }
+        return {};
+    }
     [[nodiscard]] bool has_moved() const {
         return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.moved.has_value(); });
     }
