@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,35 +15,32 @@ namespace dinal::analysis {
 
 namespace {
 
+constexpr std::array works{&Work::input, &Work::viscous, &Work::dry,     &Work::belt,
+                           &Work::base,  &Work::acts,    &Work::impacts, &Work::kept};
+
 class WorkSum {
 public:
     void add(const Work& work) {
-        input_.add(work.input);
-        viscous_.add(work.viscous);
-        dry_.add(work.dry);
-        belt_.add(work.belt);
-        base_.add(work.base);
-        acts_.add(work.acts);
-        impacts_.add(work.impacts);
-        kept_.add(work.kept);
+        for (std::size_t i = 0; i < works.size(); ++i) sums_[i].add(work.*works[i]);
     }
     [[nodiscard]] Work value() const {
-        return {input_.value(), viscous_.value(), dry_.value(),     belt_.value(),
-                base_.value(),  acts_.value(),    impacts_.value(), kept_.value()};
+        Work work;
+        for (std::size_t i = 0; i < works.size(); ++i) work.*works[i] = sums_[i].value();
+        return work;
     }
 
 private:
-    AccurateSum input_, viscous_, dry_, belt_, base_, acts_, impacts_, kept_;
+    std::array<AccurateSum, works.size()> sums_;
 };
 
-Work operator-(const Work& a, const Work& b) {
-    return {a.input - b.input, a.viscous - b.viscous, a.dry - b.dry,         a.belt - b.belt,
-            a.base - b.base,   a.acts - b.acts,       a.impacts - b.impacts, a.kept - b.kept};
+Work operator+(Work a, const Work& b) {
+    for (const auto work : works) a.*work += b.*work;
+    return a;
 }
 
-Work operator+(const Work& a, const Work& b) {
-    return {a.input + b.input, a.viscous + b.viscous, a.dry + b.dry,         a.belt + b.belt,
-            a.base + b.base,   a.acts + b.acts,       a.impacts + b.impacts, a.kept + b.kept};
+Work operator-(Work a, const Work& b) {
+    for (const auto work : works) a.*work -= b.*work;
+    return a;
 }
 
 Stored operator+(const Stored& a, const Stored& b) {
