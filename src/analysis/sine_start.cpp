@@ -189,8 +189,8 @@ public:
             sticks[i] = *next;
             for (std::size_t n = 1; n <= i; ++n) {
                 const Stick &a = sticks[i - n], &b = sticks[i];
-                constexpr double near_enough = 0.3;  // close enough for the secant method
-                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < near_enough)) continue;
+                constexpr double secant_range = 0.3;  // close enough for the secant method
+                if (a.way == b.way || !(std::fabs(b.release - a.release - half_load) < secant_range)) continue;
                 if (const auto y = place_of_rest(a, b, n)) return at_start(*y, n);
                 break;
             }
