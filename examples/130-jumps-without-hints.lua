@@ -40,8 +40,8 @@ print(string.format("rk4, h = 0.001  with hints: %11.1f thousand calls, largest 
 
 --[[ prints
 1001 rows, t 0 … 10; 32 events (31 turns, 1 slip); moving at the end; peak |theta| 2.48
-32 jumps; spectral, with hints:       1.4 thousand calls of M
-          spectral, without hints:    3.7 thousand calls, largest difference below 1e-12: true
+32 jumps; spectral, with hints:       0.8 thousand calls of M
+          spectral, without hints:    3.1 thousand calls, largest difference below 1e-12: true
 rk4, h = 0.01   without hints:        2.2 thousand calls, largest difference 3e-02
 rk4, h = 0.001  without hints:       20.5 thousand calls, largest difference 2e-03
 rk4, h = 0.0001 without hints:      203.4 thousand calls, largest difference 3e-04
