@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstring>
 
-/// A function that also exists for wide registers, which it uses where the processor has them. Its sums have the same
-/// order, and so the same digits. Sanitizers do not bear that the loader chooses.
+/// Marks a function that is also compiled for AVX2 and selected by the loader. Sums keep their order, and so their
+/// digits. Address sanitizers do not support the selection.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
 #define DINAL_WIDE __attribute__((target_clones("avx2", "default")))
 #else
@@ -25,9 +25,9 @@ template <std::size_t n>
 using Series = std::array<double, n>;
 using Samples = std::array<double, points>;
 
-/// Four numbers side by side.
+/// Four numbers in one register.
 using Four __attribute__((vector_size(32))) = double;
-/// Adds rows of a matrix, each `wide` fours of numbers, weighted by the entries of a vector.
+/// Sums the rows of a matrix, weighted by the entries of a vector. A row has 4 * `wide` numbers.
 template <std::size_t wide>
 [[gnu::always_inline]] inline void add_rows(const double* matrix, const double* weights, std::size_t rows,
                                             double* sums) {

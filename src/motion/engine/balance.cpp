@@ -49,7 +49,7 @@ bool Balances::on_stretch(const Segment& segment, double x, const Moment& at, co
 
 namespace {
 
-/// Without a call where the size stays.
+/// Sets all values to 0, and avoids the call of resize if the size is right.
 void clear(std::vector<double>& values, std::size_t size) {
     if (values.size() != size) values.resize(size);
     std::fill(values.begin(), values.end(), 0.0);

@@ -234,8 +234,8 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
     }
 }
 
-/// A condition of places that was just crossed may have been away for less than the rounding of a long stretch: a jump
-/// of torques does not turn it back at once.
+/// Returns whether a condition on angles was just crossed and crosses back at once. A jump of torques cannot turn the
+/// motion so fast, so that the crossing may be rounding of a long stretch.
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
     const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
     const std::uint64_t places = bodies < 64 ? (std::uint64_t{1} << bodies) - 1 : ~std::uint64_t{0};

@@ -79,7 +79,7 @@ private:
     [[nodiscard]] double size(std::size_t joint) const { return by_.room.sizes.on(joint_at(joint)); }
     [[nodiscard]] double belt(std::size_t joint) const { return mechanics_.belt(joint, now().t.hi, now().side()); }
     void slide(std::size_t joint, Motion way, bool leaving) { memory().slide(mechanics_, now(), joint, way, leaving); }
-    /// Nothing else moves velocities.
+    /// Projects velocities onto a frame, once, because nothing else in a decision changes them.
     void project(const Frame& frame) {
         if (projected_ != &frame) by_.projection.apply(now(), frame, now().side());
         projected_ = &frame;

@@ -15,8 +15,7 @@ using model::Joint;
 using model::Motion;
 using model::Outcome;
 
-/// At the end of the window: events of the user that pass zero right there are told, as a standstill is. Returns false
-/// if the run was over before.
+/// Reports user events that pass zero right at the end of the window. Returns false if one of them ends the run.
 bool Engine::last_instant() {
     if (problem_.drive.events.empty() || outcome_ != Outcome::reached_end) return true;
     const auto passing = users_.passing(now_, segment_, pace_.h, *balances_, frames_->of(now_.mode));

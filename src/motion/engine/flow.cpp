@@ -381,7 +381,7 @@ void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, 
             allowed += per_torque * noise_.of_torques() + others;
             note(s, series, h, allowed);
             allowed_[i] = allowed / h;
-        } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise they are those of the joint, which are judged
+        } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise the joint's torques are checked instead
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
@@ -503,7 +503,7 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
     for (std::size_t i = 0; i < accelerations.size(); ++i) accelerations[i] = s.rates[n_ + i];
     std::vector<double> y, belts(mechanics_.joints()), torques;
     std::vector<double> places;
-    // The last stretch was looked into, and its series serves until then.
+    // Up to this time functions are known by the series of the last stretch, which was sampled between its nodes.
     double looked = seen || mechanics_.nonlinear() ? -model::never : model::never;
     for (const Signal& load : mechanics_.loads()) {
         if (load.asks_in_time()) looked = std::min(looked, load.kept_until());

@@ -134,7 +134,7 @@ void Recorder::record_turns(std::size_t body, const Segment& segment, double unt
     std::vector<double>& zeros = room_.zeros;
     zeros.assign(1, -1);
     const cheb::Series<node_count - 1> slope = cheb::derivative(series);
-    // The next zero of a velocity that is clear of zero at the beginning, or passes zero clearly before.
+    // Searches the next zero by the series if the velocity is clearly nonzero first, or has crossed zero with a slope.
     const auto next_zero = [&]() -> std::optional<double> {
         const double from = zeros.back();
         Nodes values = v;
@@ -276,8 +276,8 @@ double Recorder::friction(const Now& now, std::size_t joint, const Moment& at, c
     return mechanics_.friction(joint, at, now.mode, mechanics_.belt(joint, at.t, at.side));
 }
 
-/// Where a load that jumps holds a joint together with friction, it has some value between both sides: what is beyond
-/// the limit of friction is the load's.
+/// Returns the part of a joint's holding torque that exceeds the limit of friction. If the load jumps there, it has a
+/// value between both sides and supplies this part.
 double Recorder::held_by_load(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const {
     if (!now.mode.holds(joint) || now.mode.friction[joint].beside == 0) return 0;
     const double held = balance.holding[joint];

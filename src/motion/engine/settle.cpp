@@ -1,5 +1,5 @@
-// Rest on a surface on which a load jumps: a body that dry friction stops on either side of it, and that the load
-// drives back each time, passes it ever faster, and comes to rest on it.
+// Rest on a surface at which a load jumps. If dry friction stops a body on both sides of the surface, and the load
+// drives it back each time, the body crosses the surface at shrinking intervals and comes to rest on it.
 #include <algorithm>
 #include <cmath>
 
@@ -11,14 +11,14 @@ using model::Motion;
 
 namespace {
 
-// Of the pace: torques hardly change in that time, and passages that are far shorter are lost in the rounding of
-// angles.
+// In units of the pace. Torques hardly change in the first time; crossings closer than the second are lost in the
+// rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
 constexpr double of_rounding = 64 * rounding;
 
 }  // namespace
 
-/// A load was crossed to and fro. Where the passages to come are next to nothing, the body rests.
+/// Handles a surface that was crossed back and forth. The body rests if the remaining crossings take a negligible time.
 Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     std::size_t joint = mechanics_.joints();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -44,7 +44,7 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     const Motion way = model::motion_of(speed);
     now_.y = still.y, now_.low = still.low;
     const auto velocities = now_.y.begin() + static_cast<std::ptrdiff_t>(n());
-    // Others would go on meanwhile: then it rests a little early.
+    // If other bodies move, the time is not advanced, and this body rests slightly too early.
     if (std::all_of(velocities, velocities + static_cast<std::ptrdiff_t>(n()), [](double v) { return v == 0; }))
         wait(passages->all);
     now_.mode.friction[joint].leaving = false;
@@ -53,9 +53,9 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     return Settles::now;
 }
 
-/// Returns the duration of the next passage to and fro, and of all, from this speed at the surface, under torques that
-/// stay as they are; none if they do not end there. `still`: the joint stands on the surface; so far from it the
-/// torques are asked.
+/// Returns the time of the next two crossings, and of all, from this speed at the surface, under constant torques;
+/// empty if they do not converge to the surface. In `still` the joint rests on the surface; torques are evaluated at
+/// the distance `far` from it.
 std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const Now& still, double speed, double far) {
     const Motion ahead = model::motion_of(speed), behind = model::motion_of(-speed);
     const auto back_in = [&](Motion side, Motion way) {
@@ -81,8 +81,8 @@ std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const N
     return Passages{leg, leg / (1 - kept)};
 }
 
-/// Moves the joint to where the margin of the condition is 0 to the letter. Returns false if the surface moves on while
-/// the joint stands.
+/// Moves the joint to the exact zero of the condition's margin. Returns false if the surface moves away while the joint
+/// rests.
 bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
                             double speed, double later) {
     constexpr double hardly = 1e-3;
@@ -110,7 +110,7 @@ bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t j
     return std::fabs(moved) <= hardly * std::fabs(slope * speed * later) + of_rounding * std::fabs(slope * far);
 }
 
-/// Nothing but users' states changes for this short time.
+/// Advances the time and users' states, but no angles, by a short time, unless a break or the end comes first.
 void Engine::wait(double rest) {
     if (!(rest > 0) || !(now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end))) return;
     std::vector<double> rates(mechanics_.states());

@@ -218,8 +218,8 @@ public:
     [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
     /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
     void sample(const NodeTimes& when, Nodes& out) const;
-    /// A stretch was resolved. If the next one begins in it, what is not read need not be called again up to its end,
-    /// where its series has decayed to this part.
+    /// Keeps the series of sampled functions of a resolved stretch, if it has decayed to `tolerance`. A next stretch
+    /// that begins within it evaluates the series up to its end instead of calling the functions again.
     void keep(const NodeTimes& when, double tolerance) const;
     [[nodiscard]] double kept_until() const { return sampled_ == nullptr ? -model::never : sampled_->until; }
 
@@ -364,9 +364,9 @@ private:
         double M = 0;
     } asked_last_{};
     struct Sampled {
-        Nodes values{};  ///< of the last stretch, resolved or not
+        Nodes values{};  ///< values on the last stretch, resolved or not
         NodeTimes when{};
-        double until = -model::never;  ///< the series serves
+        double until = -model::never;  ///< end of the time in which the series is valid
         Series series{};
     };
     std::unique_ptr<Sampled> sampled_;  ///< null if nothing is sampled

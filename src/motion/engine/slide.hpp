@@ -61,7 +61,7 @@ private:
         [[nodiscard]] std::vector<double> mixed() const;
     };
     [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
-    /// The acceleration of the belt of a joint, from here on.
+    /// The right-hand acceleration of the belt of a joint.
     [[nodiscard]] double belt_rate(std::size_t joint, const Moment& at) const;
 
     Mechanics& mechanics_;

@@ -33,7 +33,7 @@ public:
     /// ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges);
 
-    /// Returns those that pass zero at the present, but for rounding.
+    /// Returns the events that pass zero at the present, within rounding.
     [[nodiscard]] std::vector<std::size_t> passing(const Now& now, const Segment& last, double h, Balances& balances,
                                                    const Frame& frame);
     [[nodiscard]] std::vector<double> values(const Moment& at) const;

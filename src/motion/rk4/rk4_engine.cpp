@@ -78,7 +78,7 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
     return outcome_;
 }
 
-/// A stop that the rounding of the time puts behind the end is at the end.
+/// Moves a stop that is beyond the end by no more than the rounding of the time to the end.
 void Rk4Engine::stop_at_end() {
     constexpr double few_ulps = 64 * std::numeric_limits<double>::epsilon();
     if (!contact_.stuck() && !contact_.passes() && contact_.phase() != LoneContact::Phase::arrived) {
