@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/noise_memory.hpp"
+
 namespace dinal::analysis {
 namespace {
 
@@ -23,9 +25,34 @@ double longest_correlation(const GeneralQuestion& question, const Eigen::VectorX
     return longest;
 }
 
-bool is_all_white(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
+/// Returns whether the residual of a column is within half a step of its instrument: it follows the steps then.
+bool is_within_a_step(const GeneralQuestion& question, const Eigen::VectorXd& residual) {
     const auto parts = by_column(question, residual);
-    return std::all_of(parts.begin(), parts.end(), [](const std::vector<double>& part) { return is_white(part); });
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        double squares = 0;
+        for (const double x : parts[i]) squares += x * x;
+        constexpr double part = 0.5;
+        if (squares < part * part * question.steps[i] * question.steps[i] * static_cast<double>(parts[i].size())) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// The covariance, in units of noise squared, if some columns follow the steps of their instruments.
+Eigen::MatrixXd stepped(const GeneralQuestion& question, const Eigen::VectorXd& path, const Eigen::MatrixXd& J,
+                        double noise, Eigen::MatrixXd covariance) {
+    const Eigen::MatrixXd plain = covariance;
+    for (std::size_t column = 0; column < question.steps.size(); ++column) {
+        std::vector<Eigen::Index> rows;
+        for (std::size_t i = 0; i < question.columns.size(); ++i) {
+            if (question.columns[i] == static_cast<int>(column)) rows.push_back(static_cast<Eigen::Index>(i));
+        }
+        Eigen::MatrixXd with = plain;
+        add_steps(J(rows, Eigen::indexing::all), path(rows), question.steps[column], noise, with);
+        covariance += with - plain;
+    }
+    return covariance;
 }
 
 std::optional<LeastSquares> fit(const GeneralQuestion& question, const Eigen::VectorXd& start, Eigen::Index count,
@@ -41,6 +68,33 @@ std::optional<LeastSquares> fit_from(const GeneralQuestion& question, Eigen::Vec
         if (const auto some = fit(question, start, count, few)) start = some->parameters;
     }
     return fit(question, start, question.measured.size(), many);
+}
+
+/// Widens the errors by the memory and unevenness of the noise, by what the model may lack, and those of fitted zeros
+/// at the first time by a steady drift.
+void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, const Eigen::MatrixXd& J,
+           Covariance& covariance, GeneralFit& found) {
+    const NoiseMemory memory(residual, question.columns, J);
+    const Eigen::VectorXd& whole = question.scale.whole;
+    const double variance = found.noise * found.noise;
+    const Eigen::MatrixXd remembered = remembered_covariance(memory, J, whole, found.noise);
+    const Eigen::VectorXd by_place = widened_by_uneven_noise(memory, residual, J, whole, found.noise);
+    found.widening = std::max(1.0, widened_by_memory(memory, J, whole, found.noise).maxCoeff());
+    found.noise_is_uneven = by_place.mean() > much_wider;
+    covariance.matrix = variance * (by_place.asDiagonal() * remembered * by_place.asDiagonal());
+    found.misfit = misfit_of(residual, {memory.none(), found.noise_is_uneven}, question.columns, J,
+                             question.structures(found.value, found.noise, memory.none()));
+    for (std::size_t i = 0; i < question.zeros.size(); ++i) {
+        if (!question.zeros[i] || covariance.silent[i]) continue;
+        const auto place = static_cast<Eigen::Index>(i);
+        const Eigen::VectorXd ramp = drift(question.times, question.columns, *question.zeros[i], true).columns.col(0);
+        const Nuisance steady = nuisance(ramp, whole[place], residual, memory, J, whole, found.noise);
+        found.value[place] += steady.shift[place];
+        covariance.matrix(place, place) +=
+            variance * by_place[place] * by_place[place] * (steady.covariance(place, place) - remembered(place, place));
+        if (found.misfit) found.misfit->shift[place] -= steady.shift[place];
+    }
+    if (found.misfit) covariance.matrix += found.misfit->added_covariance();
 }
 
 }  // namespace
@@ -65,23 +119,20 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
                      .silent = {},
                      .open = {}};
     found.noise = std::sqrt(best->sum / static_cast<double>(spare));
-    found.widening = std::sqrt(longest_correlation(question, best->residual));
     const Prediction model = [&](const Eigen::VectorXd& p) { return question.model(p, question.measured.size()); };
     const Eigen::MatrixXd J = derivative(model, best->parameters, question.scale, found.noise)
                                   .value_or(Eigen::MatrixXd::Zero(question.measured.size(), n));
     Covariance covariance = covariance_of(J, question.scale.whole, found.noise);
-    const double spread = found.widening * found.noise;
-    covariance.matrix *= spread * spread;
-    if (found.noise > question.least_noise) {
-        const bool white = is_all_white(question, best->residual);
-        if (!white) {
-            const Eigen::VectorXd wider = widened_by_memory(J, question.scale.whole, best->residual, question.columns,
-                                                            found.noise, found.widening);
-            covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
-        }
-        found.misfit = misfit_of(best->residual, white, question.columns, J,
-                                 question.structures(best->parameters, found.noise, white));
-        if (found.misfit) covariance.matrix += found.misfit->added_covariance();
+    const double variance = found.noise * found.noise;
+    covariance.matrix *= variance;
+    if (found.noise > question.least_noise && is_within_a_step(question, best->residual)) {
+        found.widening = std::sqrt(longest_correlation(question, best->residual));
+        double spread = found.widening * found.noise;
+        for (const double step : question.steps) spread = std::max(spread, found.widening * step / std::sqrt(12.0));
+        covariance.matrix =
+            spread * spread * stepped(question, found.predicted, J, found.noise, covariance.matrix / variance);
+    } else if (found.noise > question.least_noise && n > 0) {
+        widen(question, best->residual, J, covariance, found);
     }
     found.silent = covariance.silent;
     found.open = covariance.open;

@@ -16,8 +16,11 @@ struct GeneralQuestion {
     std::function<std::optional<Eigen::VectorXd>(const Eigen::VectorXd& parameters, Eigen::Index count)> model;
     Eigen::VectorXd measured;          ///< in order of time, scaled by the variation of their column
     std::vector<int> columns;          ///< column of each number
+    std::vector<double> times;         ///< time of each number
+    std::vector<double> steps;         ///< resolution of the instrument of each column; 0: none visible
     std::vector<Eigen::Index> stages;  ///< lengths of the initial parts of the record that are fitted first
     Eigen::VectorXd start;
+    std::vector<std::optional<int>> zeros;  ///< for each parameter the column whose zero it is
     FitScale scale;
     double least_noise = 0;  ///< smaller residuals count as rounding
     /// The terms that the model may lack at these parameters; see misfit.hpp.
@@ -30,6 +33,7 @@ struct GeneralFit {
     std::vector<bool> silent, open;           ///< silent: not determined by the data; open: practically without bounds
     double noise = 0;                         ///< standard deviation of the residual
     double widening = 1;                      ///< factor of the errors due to correlated residuals
+    bool noise_is_uneven = false;             ///< whether errors are wider because noise is stronger where it matters
     std::optional<Misfit> misfit = {};
 
     [[nodiscard]] bool is_wrong() const { return misfit && misfit->is_sure; }

@@ -15,6 +15,7 @@
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
 #include "analysis/missing_torques.hpp"
+#include "analysis/noise_memory.hpp"
 #include "analysis/repetition.hpp"
 #include "analysis/turning_points.hpp"
 #include "motion/integrators.hpp"
@@ -994,26 +995,7 @@ private:
     void find_covariance(Rest& rest, double noise) {
         rest.slopes = slopes_at(rest, noise);
         rest.covariance = covariance_of(rest.slopes, scale_of(filled(rest.fit.parameters)).whole, noise);
-        add_steps(rest.slopes, record_.theta - rest.fit.residual, noise, rest.covariance.matrix);
-    }
-
-    /// Adds the effect of a digital instrument: its errors are equal as long as the motion stays within one step,
-    /// unless noise hides the steps (estimated by the first harmonic of the sawtooth).
-    void add_steps(const Eigen::MatrixXd& J, const Eigen::VectorXd& path, double noise,
-                   Eigen::MatrixXd& covariance) const {
-        const double step = record_.step, variance = noise * noise, rounded = step * step / 12;
-        if (step == 0) return;
-        const double other = std::max(0.0, variance - rounded) * std::pow(2 * std::numbers::pi / step, 2);
-        const double share = variance > 0 ? std::min(1.0, rounded / variance * std::exp(-other)) : 0;
-        constexpr double little = 1e-3;
-        if (share < little) return;
-        Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(count(), count());
-        for (Eigen::Index first = 0, last = 0; first < path.size(); first = last) {
-            while (last < path.size() && std::fabs(path[last] - path[first]) < step) ++last;
-            const Eigen::VectorXd sum = J.middleRows(first, last - first).colwise().sum().transpose();
-            alike += sum * sum.transpose();
-        }
-        covariance += share * covariance * (alike - J.transpose() * J) * covariance;
+        add_steps(rest.slopes, record_.theta - rest.fit.residual, record_.step, noise, rest.covariance.matrix);
     }
 
     /// Selects the most probable way to rest. Its covariance, in units of noise squared, includes the uncertainty due
@@ -1096,18 +1078,19 @@ private:
         return changes;
     }
 
-    [[nodiscard]] std::optional<Misfit> misfit(const Eigen::MatrixXd& J, std::span<const int> columns, bool is_white) {
+    /// The terms that the model may lack: a drift first, then torques that depend on the velocity and on theta.
+    [[nodiscard]] std::vector<Structure> structures(std::span<const int> columns, bool is_white) {
         const auto system = system_of(best_filled_);
         if (!system) return {};
         const model::State initial{at(best_filled_, Unknown::theta0), at(best_filled_, Unknown::velocity0)};
         const auto run = driven(*system, question_.M.value_or(model::Excitation()), initial, question_.t.size());
         if (!run) return {};
-        std::vector<Structure> structures{drift(question_.t, columns, 0, is_white)};
+        std::vector<Structure> found{drift(question_.t, columns, 0, is_white)};
         if (const auto changes = responses_at_best(*system, initial, *run)) {
-            structures.push_back({Follows::velocity, changes->leftCols(velocity_torques), {}});
-            structures.push_back({Follows::theta, changes->rightCols(theta_torques), {}});
+            found.push_back({Follows::velocity, changes->leftCols(velocity_torques), {}});
+            found.push_back({Follows::theta, changes->rightCols(theta_torques), {}});
         }
-        return misfit_of(best_->residual, is_white, columns, J, structures);
+        return found;
     }
 
     /// Returns whether the residual is within half a step of the instrument, which correlates errors if the motion is
@@ -1135,56 +1118,41 @@ private:
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
-        // Samples with correlated noise carry less information than independent ones.
-        if (found.noise > least_noise * record_.range) {
-            found.widening = std::sqrt(correlation_length({left.data(), static_cast<std::size_t>(left.size())}));
+        const NoiseMemory memory(left, std::vector<int>(question_.t.size(), 0), weighed.slopes);
+        judge(weighed.slopes, found);
+        const double spread = noise_of_errors();
+        std::vector<Eigen::MatrixXd> cautious;
+        if (!found.is_noise && !found.wild && !is_rounding() && count() > 0) {
+            cautious = widen(weighed.slopes, memory, covariance, found);
+        } else if (is_within_a_step() && deviation() > least_noise * record_.range) {
+            found.widening = std::sqrt(correlation_length({left.data(), question_.t.size()}));
+            covariance.matrix *= found.widening * found.widening;
+            allow_for_drift(weighed.slopes, memory, Eigen::VectorXd::Ones(count()), covariance, found);
         }
-        const double spread = found.widening * noise_of_errors();
-        judge(found);
-        if (!found.is_noise && !found.wild && !is_rounding()) {
-            const Eigen::MatrixXd& J = weighed.slopes;
-            const std::vector<int> columns(question_.t.size(), 0);
-            const bool white = is_white({left.data(), question_.t.size()});
-            if (!white) {
-                const Eigen::VectorXd wider =
-                    widened_by_memory(J, scale_of(best_filled_).whole, left, columns, found.noise, found.widening);
-                covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
-            }
-            const auto wrong = misfit(J, columns, white);
-            if (wrong) covariance.matrix += wrong->added_covariance() / (spread * spread);
-            if (wrong && wrong->is_sure) {
-                found.misfit = wrong->what;
-                found.noise_without_misfit = std::min(wrong->noise, found.scatter);
-                found.has_errors = wrong->leaves_errors();
-            }
-        }
-        Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
         for (Eigen::Index i = 0; i < count(); ++i) {
             const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
             found.fitted[which] = true;
             found.silent[which] = covariance.silent[static_cast<std::size_t>(i)] || tells_nothing_[which];
-            for (Eigen::Index j = 0; j < count(); ++j) {
-                full(static_cast<Eigen::Index>(which),
-                     static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(j)])) = covariance.matrix(i, j);
+        }
+        for (const Eigen::MatrixXd& one : cautious) {
+            set_errors(full_of(one), spread, found);
+            for (std::size_t i = 0; i < found.error.size(); ++i) {
+                found.cautious[i] = std::max(found.cautious[i], found.error[i]);
+            }
+            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
+                ratio->cautious = std::max(ratio->cautious, ratio->error);
             }
         }
-        if (seeks_Re_) {  // add the variance of Rd to that of Re - Rd
-            constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
-            full.row(Re) += full.row(Rd);
-            full.col(Re) += full.col(Rd);
-        }
-        for (const Unknown which : unknowns_) {
-            const auto i = static_cast<std::size_t>(which);
-            const auto place = static_cast<Eigen::Index>(which);
-            const double open = least_error([which](const Parameters& p) { return at(p, which); });
-            found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
-        }
-        ratios(full, spread, found);
+        const Eigen::MatrixXd full = full_of(covariance.matrix);
+        set_errors(full, spread, found);
         if (found.is_unexplained && !found.wild) found.has_errors = false;
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors assume a motion, and there may be none
             found.error.fill(0);
-            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) ratio->error = 0;
+            found.cautious.fill(0);
+            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
+                ratio->error = ratio->cautious = 0;
+            }
             for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
             found.low.fill(-model::never), found.high.fill(model::never);
         }
@@ -1194,6 +1162,104 @@ private:
         found.cut_low = record_.cut.at_low;
         found.cut_high = record_.cut.at_high;
         return found;
+    }
+
+    /// Widens the errors by the memory and unevenness of the noise, by what the model may lack, and that of the offset
+    /// at the first time by a steady drift. Returns cautious().
+    [[nodiscard]] std::vector<Eigen::MatrixXd> widen(const Eigen::MatrixXd& J, const NoiseMemory& memory,
+                                                     Covariance& covariance, Identified& found) {
+        const Eigen::VectorXd &left = best_->residual, whole = scale_of(best_filled_).whole;
+        const Eigen::MatrixXd remembered = remembered_covariance(memory, J, whole, found.noise);
+        const Eigen::VectorXd by_memory = widened_by_memory(memory, J, whole, found.noise),
+                              by_place = widened_by_uneven_noise(memory, left, J, whole, found.noise),
+                              wider = by_memory.cwiseProduct(by_place);
+        found.widening = std::max(1.0, by_memory.maxCoeff());
+        found.noise_is_uneven = by_place.mean() > much_wider;
+        covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
+        const std::vector<int> columns(question_.t.size(), 0);
+        const std::vector<Structure> lacking = structures(columns, memory.none());
+        auto wrong = misfit_of(left, {memory.none(), found.noise_is_uneven}, columns, J, lacking);
+        const Eigen::VectorXd drift = allow_for_drift(J, memory, by_place, covariance, found);
+        if (wrong && drift.size() > 0) wrong->shift -= drift;
+        const double variance = found.noise * found.noise;
+        if (wrong) covariance.matrix += wrong->added_covariance() / variance;
+        if (wrong && wrong->is_sure) {
+            found.misfit = wrong->what;
+            found.other_misfits = wrong->others;
+            found.noise_without_misfit = std::min(wrong->noise, found.scatter);
+            found.has_errors = wrong->leaves_errors();
+        }
+        return cautious(lacking, J, memory, remembered, covariance.matrix, found.noise);
+    }
+
+    /// The covariances of the parameters if friction may fall with the speed, by up to Rd, or the spring may be
+    /// nonlinear: one for each of these torques.
+    [[nodiscard]] std::vector<Eigen::MatrixXd> cautious(std::span<const Structure> lacking, const Eigen::MatrixXd& J,
+                                                        const NoiseMemory& memory, const Eigen::MatrixXd& remembered,
+                                                        const Eigen::MatrixXd& covariance, double noise) const {
+        std::vector<Eigen::MatrixXd> all;
+        const Eigen::VectorXd whole = scale_of(best_filled_).whole;
+        const auto add = [&](const Eigen::VectorXd& term, double size) {
+            if (!(size > 0)) return;
+            const Nuisance torque = nuisance(term, size, best_->residual, memory, J, whole, noise);
+            all.push_back(covariance + torque.covariance - remembered +
+                          torque.shift * torque.shift.transpose() / (noise * noise));
+        };
+        for (const Structure& one : lacking) {
+            const bool is_friction = one.what == Follows::velocity;
+            if (one.what == Follows::time || is_given(is_friction ? Unknown::Rd : Unknown::k)) continue;
+            const double size =
+                is_friction ? at(best_filled_, Unknown::Rd) : at(best_filled_, Unknown::k) * record_.range / 4;
+            for (Eigen::Index i = is_friction ? first_falling : first_bent; i < one.columns.cols(); ++i) {
+                add(one.columns.col(i), size);
+            }
+        }
+        return all;
+    }
+
+    /// Corrects the offset to that of the first time if the zero drifts steadily, and its error. Returns the change.
+    Eigen::VectorXd allow_for_drift(const Eigen::MatrixXd& J, const NoiseMemory& memory, const Eigen::VectorXd& wider,
+                                    Covariance& covariance, Identified& found) const {
+        const Eigen::Index zero = place_of(Unknown::offset);
+        if (zero >= count() || covariance.silent[static_cast<std::size_t>(zero)]) return {};
+        const std::vector<int> columns(question_.t.size(), 0);
+        const Eigen::VectorXd ramp = drift(question_.t, columns, 0, true).columns.col(0),
+                              whole = scale_of(best_filled_).whole;
+        const double noise = noise_of_errors();
+        const Nuisance steady = nuisance(ramp, record_.range, best_->residual, memory, J, whole, noise);
+        const double more = steady.covariance(zero, zero) - remembered_covariance(memory, J, whole, noise)(zero, zero);
+        covariance.matrix(zero, zero) += wider[zero] * wider[zero] * more;
+        at(found.value, Unknown::offset) += steady.shift[zero];
+        Eigen::VectorXd change = Eigen::VectorXd::Zero(count());
+        change[zero] = steady.shift[zero];
+        return change;
+    }
+
+    /// The covariance matrix of all unknowns from that of the fitted ones.
+    [[nodiscard]] Eigen::MatrixXd full_of(const Eigen::MatrixXd& covariance) const {
+        Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
+        const auto place = [&](Eigen::Index i) {
+            return static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(i)]);
+        };
+        for (Eigen::Index i = 0; i < count(); ++i) {
+            for (Eigen::Index j = 0; j < count(); ++j) full(place(i), place(j)) = covariance(i, j);
+        }
+        if (seeks_Re_) {  // add the variance of Rd to that of Re - Rd
+            constexpr auto Rd = static_cast<Eigen::Index>(Unknown::Rd), Re = static_cast<Eigen::Index>(Unknown::Re);
+            full.row(Re) += full.row(Rd);
+            full.col(Re) += full.col(Rd);
+        }
+        return full;
+    }
+
+    void set_errors(const Eigen::MatrixXd& full, double spread, Identified& found) const {
+        for (const Unknown which : unknowns_) {
+            const auto i = static_cast<std::size_t>(which);
+            const auto place = static_cast<Eigen::Index>(which);
+            const double open = least_error([which](const Parameters& p) { return at(p, which); });
+            found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
+        }
+        ratios(full, spread, found);
     }
 
     // ---- bounds of parameters that the record does not determine
@@ -1266,9 +1332,18 @@ private:
         return ratio < 2 - deviations * 2 / std::sqrt(static_cast<double>(n));
     }
 
+    /// Returns whether the residual is noise with a memory of one step.
+    [[nodiscard]] bool has_only_memory(const Eigen::MatrixXd& J) const {
+        const std::vector<int> columns(question_.t.size(), 0);
+        const NoiseMemory memory(best_->residual, columns, J, 1);
+        const Eigen::MatrixXd white = memory.whitened(best_->residual);
+        constexpr double very_unusual = 4;
+        return is_white({white.data(), question_.t.size()}, very_unusual);
+    }
+
     /// Judges whether the fit explains the record. The search also finds a motion in pure noise, which explains some
     /// ten times its variance.
-    void judge(Identified& found) const {
+    void judge(const Eigen::MatrixXd& J, Identified& found) const {
         const double all = (record_.theta.array() - record_.theta.mean()).square().sum(), left = best_->sum;
         constexpr double by_search = 2;
         const double some = question_.M ? 20 : 12;  // measured: about one of a hundred records of noise explains more
@@ -1277,9 +1352,9 @@ private:
         found.scatter = std::max(record_.noise, smallest_step(question_.theta));
         constexpr double much = 5, part = 0.01;
         constexpr double more = 1.25, little = 1e-4, sure = 5;
-        found.is_unexplained = (found.noise > much * found.scatter && left > part * all) ||
-                               (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure) &&
-                                !has_only_memory({best_->residual.data(), question_.t.size()}));
+        found.is_unexplained =
+            (found.noise > much * found.scatter && left > part * all) ||
+            (found.noise > more * found.scatter && left > little * all && leaves_pattern(sure) && !has_only_memory(J));
         if (question_.M && !question_.M->has_feedback()) {
             std::vector<double> M;
             for (const double t : question_.t) M.push_back(question_.M->value(t));
@@ -1287,7 +1362,11 @@ private:
         }
         Eigen::Index which = 0;
         const double most = best_->residual.cwiseAbs().maxCoeff(&which);
-        if (2 * most * most > left) found.wild = static_cast<std::size_t>(which);
+        const double others = left - most * most, usual = much * found.scatter;
+        if (!(most * most > others)) return;
+        found.wild = static_cast<std::size_t>(which);
+        const bool explains_others = others < usual * usual * static_cast<double>(record_.theta.size());
+        if (found.is_unexplained && !explains_others) found.has_errors = false;
     }
 
     /// Computes omega0, zeta and Rd/k, with errors that include the correlations of their parts.
@@ -1302,10 +1381,13 @@ private:
             by.head(4) << by_I, by_k, by_C, by_Rd;
             return std::max(least_error(value), spread * std::sqrt(std::max(0.0, by.dot(covariance * by))));
         };
-        found.omega0 = {omega0, error(Unknown::k, omega0_of, -omega0 / (2 * I), omega0 / (2 * k), 0, 0)};
-        found.zeta = {zeta,
-                      error(Unknown::C, zeta_of, -zeta / (2 * I), -zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0)};
-        found.Rd_over_k = {dry_of(found.value), error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k)};
+        const auto set = [](IdentifiedRatio& ratio, double value, double its_error) {
+            ratio.value = value, ratio.error = its_error;
+        };
+        set(found.omega0, omega0, error(Unknown::k, omega0_of, -omega0 / (2 * I), omega0 / (2 * k), 0, 0));
+        set(found.zeta, zeta,
+            error(Unknown::C, zeta_of, -zeta / (2 * I), -zeta / (2 * k), 1 / (2 * std::sqrt(I * k)), 0));
+        set(found.Rd_over_k, dry_of(found.value), error(Unknown::Rd, dry_of, 0, -Rd / (k * k), 0, 1 / k));
     }
 
     const IdentifyQuestion& question_;

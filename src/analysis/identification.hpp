@@ -33,10 +33,12 @@ struct IdentifyQuestion {
 
 struct IdentifiedRatio {
     double value = 0, error = 0;  ///< error: one standard deviation
+    double cautious = 0;          ///< the error if friction may fall with the speed or the spring be nonlinear
 };
 
 struct Identified {
     std::array<double, unknown_count> value{}, error{};  ///< error: one standard deviation; 0 for given parameters
+    std::array<double, unknown_count> cautious{};        ///< the same; 0: none
     std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: not determined by the record
     /// for silent parameters: values from low to high fit about equally well
     std::array<double, unknown_count> low{}, high{};
@@ -45,13 +47,15 @@ struct Identified {
     double noise = 0;                               ///< standard deviation of the residual
     /// numbers of samples at the least and greatest value if these clip the record
     std::size_t cut_low = 0, cut_high = 0;
-    double scatter = 0;       ///< differences of neighbouring samples that a smooth motion would not have
-    double widening = 1;      ///< factor of the errors due to correlated residuals
-    bool M_is_noisy = false;  ///< whether M is noisy, which the errors ignore
-    bool is_noise = false;    ///< whether the fit explains no more than it would of pure noise
+    double scatter = 0;            ///< differences of neighbouring samples that a smooth motion would not have
+    double widening = 1;           ///< factor of the errors due to correlated residuals
+    bool noise_is_uneven = false;  ///< whether the errors are wider because noise is stronger where it matters
+    bool M_is_noisy = false;       ///< whether M is noisy, which the errors ignore
+    bool is_noise = false;         ///< whether the fit explains no more than it would of pure noise
     /// whether much of the record is unexplained, and the residual is not noise
     bool is_unexplained = false;
-    std::optional<Follows> misfit = {};  ///< pattern in the residual that indicates a wrong model
+    std::optional<Follows> misfit = {};       ///< pattern in the residual that indicates a wrong model
+    std::vector<Follows> other_misfits = {};  ///< patterns that explain the residual about as well
     /// standard deviation without that pattern, or that of the record itself if less
     double noise_without_misfit = 0;
     bool has_errors = true;                ///< false if the model is so wrong that errors are meaningless

@@ -154,7 +154,7 @@ Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double
     Covariance result{Eigen::MatrixXd::Zero(n, n), none, none};
     if (n == 0) return result;
     // Derivatives below 1e-8 of the greatest are rounding of the differences.
-    constexpr double widest = 10, rounding = 1e-8;
+    constexpr double widest = widest_error, rounding = 1e-8;
     J *= whole.asDiagonal();
     const double known = std::max(noise / widest, rounding * std::max(J.colwise().norm().maxCoeff(), 1e-300));
     J.conservativeResize(rows + n, n);

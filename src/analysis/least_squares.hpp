@@ -42,6 +42,8 @@ struct Covariance {
     std::vector<bool> open;  ///< whether the error exceeds half of the prior one, so that it is practically unbounded
     double log_volume = 0;   ///< log of the square root of the determinant, in units of `whole`
 };
+/// The prior error of a parameter, in units of `whole`.
+inline constexpr double widest_error = 10;
 /// Computes the covariance from the derivatives J. As prior knowledge each parameter has an error of ten times `whole`,
 /// which bounds the errors along flat valleys; all parameters that change along such a valley are silent.
 Covariance covariance_of(Eigen::MatrixXd J, const Eigen::VectorXd& whole, double noise);

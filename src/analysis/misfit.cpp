@@ -8,6 +8,7 @@
 
 #include "algebra/decompositions.hpp"
 #include "analysis/least_squares.hpp"
+#include "analysis/noise_memory.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -39,59 +40,6 @@ private:
 /// Significance in standard deviations: from the first a term adds to the errors, from the second it counts as present.
 constexpr double possible = 2.2, beyond_chance = 4;
 
-/// Removes a correlation with the previous sample (a memory of one step), in each measured column separately.
-class Filter {
-public:
-    Filter(std::span<const int> columns, const Eigen::VectorXd& residual, int fitted) : before_(columns.size(), -1) {
-        std::vector<Eigen::Index> last;
-        double products = 0, squares = 0;
-        for (std::size_t i = 0; i < columns.size(); ++i) {
-            const auto column = static_cast<std::size_t>(columns[i]);
-            if (last.size() <= column) last.resize(column + 1, -1);
-            const auto now = static_cast<Eigen::Index>(i);
-            before_[i] = std::exchange(last[column], now);
-            squares += residual[now] * residual[now];
-            if (before_[i] >= 0) products += residual[now] * residual[before_[i]];
-        }
-        // Each fitted parameter removes part of the slow noise and so reduces the measured memory.
-        const double n = static_cast<double>(columns.size()), found = squares > 0 ? products / squares : 0;
-        constexpr double most = 0.98;
-        memory_ = std::clamp(found + (1 + std::max(found, 0.0)) * (fitted + 1) / n, 0.0, most);
-    }
-
-    [[nodiscard]] Eigen::MatrixXd operator()(const Eigen::MatrixXd& all) const {
-        Eigen::MatrixXd filtered = all;
-        const double first = std::sqrt(1 - memory_ * memory_);
-        for (std::size_t i = 0; i < before_.size(); ++i) {
-            const auto now = static_cast<Eigen::Index>(i);
-            if (before_[i] >= 0) {
-                filtered.row(now) -= memory_ * all.row(before_[i]);
-            } else {
-                filtered.row(now) *= first;
-            }
-        }
-        return filtered;
-    }
-
-    /// The covariance matrix of noise with that memory times `all`, by one recursion forwards and one backwards.
-    [[nodiscard]] Eigen::MatrixXd remembered(const Eigen::MatrixXd& all) const {
-        Eigen::MatrixXd behind = all, before = all;
-        for (std::size_t i = 0; i < before_.size(); ++i) {
-            const auto now = static_cast<Eigen::Index>(i);
-            if (before_[i] >= 0) behind.row(now) += memory_ * behind.row(before_[i]);
-        }
-        for (std::size_t i = before_.size(); i-- > 0;) {
-            const auto now = static_cast<Eigen::Index>(i);
-            if (before_[i] >= 0) before.row(before_[i]) += memory_ * before.row(now);
-        }
-        return behind + before - all;
-    }
-
-private:
-    std::vector<Eigen::Index> before_;
-    double memory_ = 0;
-};
-
 /// The matrix [a b]; missing rows are zero.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     Eigen::MatrixXd both(std::max(a.rows(), b.rows()), a.cols() + b.cols());
@@ -111,18 +59,31 @@ Regression regression(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) 
     return {parts.cwiseQuotient(lengths), y - units * parts};
 }
 
+/// The standard deviation of the numbers around each place.
+Eigen::VectorXd loudness(const Eigen::VectorXd& numbers) {
+    constexpr Eigen::Index around = 20;
+    const Eigen::Index n = numbers.size();
+    Eigen::VectorXd found(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const Eigen::Index first = std::max<Eigen::Index>(0, i - around), last = std::min(n - 1, i + around);
+        const auto near = numbers.segment(first, last - first + 1);
+        found[i] = std::max(near.norm() / std::sqrt(static_cast<double>(near.size())), 1e-300);
+    }
+    return found;
+}
+
 /// Searches the terms of a structure that explain more of a residual than noise could: the most significant one first,
 /// then further ones. Each is tested in addition to the slopes, so that effects which the parameters can imitate do not
 /// count.
 class Search {
 public:
-    Search(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns, const Eigen::MatrixXd& slopes,
-           const Structure& structure)
+    Search(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
+           const Eigen::MatrixXd& slopes, const Structure& structure)
         : size_(residual.size()),
           first_(slopes.cols()),
           terms_(structure.columns.cols()),
           last_(first_ + terms_ + structure.faster.cols()),
-          products_(products(residual, is_white, columns, slopes, structure)) {
+          products_(products(residual, noise, columns, slopes, structure)) {
         for (Eigen::Index i = 0; i < first_; ++i) products_.take_out(i);
         double squares = 0;
         for (Eigen::Index i = first_ + terms_; i < last_; ++i) squares += score(i) * score(i);
@@ -147,12 +108,16 @@ public:
 
 private:
     /// The products of slopes, terms, faster terms and, last, the residual, filtered if the residual has a memory.
-    static Products products(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
+    static Products products(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
                              const Eigen::MatrixXd& slopes, const Structure& structure) {
         const Eigen::MatrixXd known = beside(slopes, structure.columns);
-        const Eigen::MatrixXd all = beside(beside(known, structure.faster), residual);
-        if (is_white) return Products(all);
-        return Products(Filter(columns, regression(known, residual).rest, static_cast<int>(known.cols()))(all));
+        Eigen::MatrixXd all = beside(beside(known, structure.faster), residual);
+        if (!noise.is_white) {
+            // A longer memory would also take a nearly periodic misfit for noise.
+            all = NoiseMemory(regression(known, residual).rest, columns, known, 1).whitened(all);
+        }
+        if (noise.is_uneven) all = loudness(all.col(all.cols() - 1)).cwiseInverse().asDiagonal() * all;
+        return Products(all);
     }
 
     /// The significance of a column in the residual, in standard deviations.
@@ -206,20 +171,34 @@ Structure drift(std::span<const double> times, std::span<const int> columns, int
     return {Follows::time, drifts.leftCols(slow), drifts.rightCols(all - slow)};
 }
 
-std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
+std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
                                 const Eigen::MatrixXd& slopes, std::span<const Structure> structures) {
-    Misfit worst;
-    Eigen::MatrixXd all = slopes;
+    struct Found {
+        Search search;
+        const Structure* structure;
+    };
+    std::vector<Found> found;
     double most = 0;
     for (const Structure& structure : structures) {
-        const Search search(residual, is_white, columns, slopes, structure);
-        if (!(search.most() > most)) continue;
-        most = search.most();
-        worst.what = structure.what;
-        all = slopes;
-        for (const Eigen::Index i : search.found()) all = beside(all, structure.columns.col(i));
+        Search search(residual, noise, columns, slopes, structure);
+        most = std::max(most, search.most());
+        if (search.most() > 0) found.push_back({std::move(search), &structure});
     }
-    if (most == 0) return {};
+    if (found.empty()) return {};
+    const auto better = [](const Found& a, const Found& b) { return a.search.most() > b.search.most(); };
+    std::sort(found.begin(), found.end(), better);
+    const Found& best = found.front();
+    Misfit worst{.what = best.structure->what};
+    const double odds = 2 * std::log(20.0);
+    for (const Found& other : found) {
+        const bool is_told = other.structure->what == worst.what ||
+                             std::count(worst.others.begin(), worst.others.end(), other.structure->what) > 0;
+        if (is_told || best.search.most() * best.search.most() > other.search.most() * other.search.most() + odds)
+            continue;
+        worst.others.push_back(other.structure->what);
+    }
+    Eigen::MatrixXd all = slopes;
+    for (const Eigen::Index i : best.search.found()) all = beside(all, best.structure->columns.col(i));
     const Regression without = regression(all, residual);
     worst.is_sure = most > beyond_chance;
     worst.share = 1 - without.rest.squaredNorm() / residual.squaredNorm();
@@ -228,14 +207,14 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, bool is_white, 
     return worst;
 }
 
-Eigen::VectorXd widened_by_memory(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole,
-                                  const Eigen::VectorXd& residual, std::span<const int> columns, double noise,
-                                  double widening) {
-    const Filter filter(columns, residual, static_cast<int>(slopes.cols()));
-    const Eigen::MatrixXd plain = covariance_of(slopes, whole, noise).matrix;
-    const Eigen::MatrixXd wide = plain * (slopes.transpose() * filter.remembered(slopes)) * plain;
-    const Eigen::VectorXd ratio = wide.diagonal().cwiseQuotient(plain.diagonal()) / (widening * widening);
-    return ratio.cwiseMax(1).cwiseSqrt();
+Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorXd& residual, const NoiseMemory& memory,
+                  const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole, double noise) {
+    const Eigen::Index n = slopes.cols();
+    Eigen::VectorXd sizes(n + 1);
+    sizes << whole, size / widest_error;
+    const Eigen::MatrixXd all = beside(slopes, term);
+    return {(covariance_of(all, sizes, noise).matrix * (all.transpose() * residual)).head(n),
+            remembered_covariance(memory, all, sizes, noise).topLeftCorner(n, n)};
 }
 
 bool is_white(std::span<const double> residual, double unusual) {
@@ -248,14 +227,6 @@ bool is_white(std::span<const double> residual, double unusual) {
         sum += n * (n + 2) * part * part / (n - static_cast<double>(lag));
     }
     return lags == 0 || deviations(sum, static_cast<int>(lags)) < unusual;
-}
-
-bool has_only_memory(std::span<const double> residual) {
-    const double memory = correlated(residual, 1) / correlated(residual, 0);
-    std::vector<double> filtered;
-    for (std::size_t i = 1; i < residual.size(); ++i) filtered.push_back(residual[i] - memory * residual[i - 1]);
-    constexpr double very_unusual = 4;
-    return memory > 0 && is_white(filtered, very_unusual);
 }
 
 double smallest_step(std::span<const double> values) {
@@ -275,6 +246,23 @@ double step_of_instrument(std::span<const double> values) {
         return std::fabs(steps - std::round(steps)) < rounding * std::max(1.0, std::fabs(steps));
     });
     return is_even ? step : 0;
+}
+
+void add_steps(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& path, double step, double noise,
+               Eigen::MatrixXd& covariance) {
+    const double variance = noise * noise, rounded = step * step / 12;
+    if (step == 0) return;
+    const double other = std::max(0.0, variance - rounded) * std::pow(2 * std::numbers::pi / step, 2);
+    const double share = variance > 0 ? std::min(1.0, rounded / variance * std::exp(-other)) : 0;
+    constexpr double little = 1e-3;
+    if (share < little) return;
+    Eigen::MatrixXd alike = Eigen::MatrixXd::Zero(slopes.cols(), slopes.cols());
+    for (Eigen::Index first = 0, last = 0; first < path.size(); first = last) {
+        while (last < path.size() && std::fabs(path[last] - path[first]) < step) ++last;
+        const Eigen::VectorXd sum = slopes.middleRows(first, last - first).colwise().sum().transpose();
+        alike += sum * sum.transpose();
+    }
+    covariance += share * covariance * (alike - slopes.transpose() * slopes) * covariance;
 }
 
 }  // namespace dinal::analysis

@@ -13,6 +13,9 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
+
+#include "analysis/noise_memory.hpp"
 
 namespace dinal::analysis {
 
@@ -30,10 +33,11 @@ Structure drift(std::span<const double> times, std::span<const int> columns, int
 
 struct Misfit {
     Follows what = Follows::velocity;
-    bool is_sure = false;        ///< whether chance would produce it in less than one of a hundred records
-    double share = 0;            ///< fraction of the residual's sum of squares that its terms explain
-    double noise = 0;            ///< standard deviation of the residual without them
-    Eigen::VectorXd shift = {};  ///< change of the parameters when its terms are added to the model
+    std::vector<Follows> others = {};  ///< further dependences that explain the residual about as well
+    bool is_sure = false;              ///< whether chance would produce it in less than one of a hundred records
+    double share = 0;                  ///< fraction of the residual's sum of squares that its terms explain
+    double noise = 0;                  ///< standard deviation of the residual without them
+    Eigen::VectorXd shift = {};        ///< change of the parameters when its terms are added to the model
 
     /// The parameters are not corrected, so their error includes the whole shift, multiplied by the root of 2 as a
     /// margin.
@@ -43,27 +47,37 @@ struct Misfit {
     [[nodiscard]] bool leaves_errors() const { return share < 1.0 / 3; }
 };
 
-/// The most significant structure; empty if all may be noise. `slopes` are the derivatives with respect to the
-/// parameters, `columns` the measured column of each number.
-std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, bool is_white, std::span<const int> columns,
+struct NoiseKind {
+    bool is_white = true;    ///< without memory
+    bool is_uneven = false;  ///< stronger in some parts of the record than in others
+};
+
+/// The most significant structure; empty if all may be noise. `slopes` are the derivatives
+/// with respect to the parameters, `columns` the measured column of each number.
+std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
                                 const Eigen::MatrixXd& slopes, std::span<const Structure> structures);
 
-/// The factors by which the errors of the parameters grow, in addition to `widening`, due to noise with a memory of one
-/// step, which has stronger slow components.
-Eigen::VectorXd widened_by_memory(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole,
-                                  const Eigen::VectorXd& residual, std::span<const int> columns, double noise,
-                                  double widening);
+/// What a term that the fit leaves out, with a coefficient of the prior error `size`, does to the parameters.
+struct Nuisance {
+    Eigen::VectorXd shift;       ///< their change if the term is fitted, too
+    Eigen::MatrixXd covariance;  ///< that of such a fit, in units of noise squared
+};
+Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorXd& residual, const NoiseMemory& memory,
+                  const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole, double noise);
 
 /// Returns whether the autocorrelation (up to 40 lags, by Ljung and Box) is within `unusual` standard deviations of
 /// chance.
 bool is_white(std::span<const double> residual, double unusual = 2);
-/// Returns whether the residual is white after a memory of one step is filtered out.
-bool has_only_memory(std::span<const double> residual);
 
 /// The smallest nonzero difference of two neighbours.
 double smallest_step(std::span<const double> values);
 /// The smallest step if all values are whole multiples of it apart, as those of a digital instrument or printed
 /// numbers; otherwise 0.
 double step_of_instrument(std::span<const double> values);
+/// Adds to a covariance in units of noise squared the effect of a digital instrument with this step on the reading of
+/// `path`: its errors are equal as long as the motion stays within one step, unless noise hides the steps (estimated by
+/// the first harmonic of the sawtooth).
+void add_steps(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& path, double step, double noise,
+               Eigen::MatrixXd& covariance);
 
 }  // namespace dinal::analysis

@@ -17,6 +17,10 @@ namespace dinal::analysis {
 
 /// The numbers of unit torques that depend on velocity and on theta; they are stored in this order.
 inline constexpr Eigen::Index velocity_torques = 5, theta_torques = 3;
+/// The first of those velocity torques that are friction which falls with the speed.
+inline constexpr Eigen::Index first_falling = 2;
+/// The first of those theta torques that a linear spring does not have.
+inline constexpr Eigen::Index first_bent = 1;
 
 class MissingTorques {
 public:

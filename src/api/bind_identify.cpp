@@ -116,6 +116,8 @@ struct FitAnswer {
     analysis::IdentifyQuestion question;
     analysis::Identified found;
     std::vector<std::pair<std::string, double>> values, errors;
+    /// errors that are much wider if friction may fall with the speed or the spring be nonlinear
+    std::vector<std::pair<std::string, double>> cautious = {};
     /// parameters that the record does not determine, and their bounds
     std::vector<std::pair<std::string, std::vector<double>>> silent;
     std::optional<model::System> system;
@@ -417,6 +419,7 @@ public:
             question.scale.least[i] = one.least;
             question.scale.whole[i] = std::max(10 * one.typical, std::fabs(one.start));
             question.other_starts.push_back(one.other_starts);
+            question.zeros.push_back(column_with_zero(one.name));
         }
         std::vector<double> all;
         for (std::size_t row = 0; row < t_.size(); ++row) {
@@ -424,6 +427,7 @@ public:
                 if (std::isnan(columns_[j].numbers[row])) continue;
                 all.push_back(columns_[j].numbers[row] / columns_[j].size);
                 question.columns.push_back(static_cast<int>(j));
+                question.times.push_back(t_[row]);
             }
             known_until_.push_back(static_cast<Eigen::Index>(all.size()));
         }
@@ -445,6 +449,10 @@ public:
         };
         constexpr double rounding = 1e-7;
         for (const MeasuredColumn& column : columns_) {
+            std::vector<double> known;
+            std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(known),
+                         [](double x) { return !std::isnan(x); });
+            question.steps.push_back(analysis::step_of_instrument(known) / column.size);
             question.least_noise = std::max(question.least_noise, rounding * column.range / column.size);
         }
         const auto found = analysis::general_fit(question);
@@ -611,6 +619,15 @@ private:
             return column.joint == joint && column.quantity == quantity;
         });
         return found == columns_.end() ? nullptr : &*found;
+    }
+
+    /// The measured column of angles whose zero has this name.
+    [[nodiscard]] std::optional<int> column_with_zero(std::string_view name) const {
+        for (std::size_t i = 0; i < columns_.size(); ++i) {
+            const bool is_angle = columns_[i].quantity == Measure::theta;
+            if (is_angle && before_names(system_, columns_[i].joint) + "offset" == name) return static_cast<int>(i);
+        }
+        return {};
     }
 
     /// Returns whether the initial angle matters: without a spring, no velocity depends on it.
@@ -968,6 +985,7 @@ private:
         }
         if (found.is_wrong()) {
             fit.found.misfit = found.misfit->what;
+            fit.found.other_misfits = found.misfit->others;
             fit.found.noise_without_misfit = std::min(found.misfit->noise, 1.0) * columns_.front().size;
             fit.found.has_errors = found.misfit->leaves_errors();
         }
@@ -984,6 +1002,7 @@ private:
         fit.found.noise = found.noise * first.size;
         constexpr double rounding = 1e-7;
         if (fit.found.noise > rounding * first.range) fit.found.widening = found.widening;
+        fit.found.noise_is_uneven = found.noise_is_uneven;
     }
 
     /// Sets bounds of two standard errors. A parameter that does not affect the motion is only bounded by its least
@@ -1018,23 +1037,25 @@ private:
 
 void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
-    const auto add = [&fit](std::string_view name, double value, double error) {
+    const auto add = [&fit](std::string_view name, double value, double error, double cautious) {
         fit.values.emplace_back(name, value);
         const double known =
             fit.found.has_errors ? std::max(error, 1e-15 * std::fabs(value)) : withheld;  // at least a few ulps
         fit.errors.emplace_back(name, error > 0 ? known : 0);
+        constexpr double much = 1.5;
+        if (fit.found.has_errors && error > 0 && cautious > much * error) fit.cautious.emplace_back(name, cautious);
     };
     const auto given = [&fit](Unknown which) {
         return fit.question.given[static_cast<std::size_t>(which)].has_value();
     };
     const bool absolute = fit.question.M || given(Unknown::I) || given(Unknown::k);
     if (!absolute) fit.units.M.clear();
-    add("omega0", found.omega0.value, found.omega0.error);
-    add("zeta", found.zeta.value, found.zeta.error);
-    add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error);
+    add("omega0", found.omega0.value, found.omega0.error, found.omega0.cautious);
+    add("zeta", found.zeta.value, found.zeta.error, found.zeta.cautious);
+    add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error, found.Rd_over_k.cautious);
     for (std::size_t i = absolute ? 0 : static_cast<std::size_t>(Unknown::theta0); i < analysis::unknown_names.size();
          ++i) {
-        add(analysis::unknown_names[i], found.value[i], found.error[i]);
+        add(analysis::unknown_names[i], found.value[i], found.error[i], found.cautious[i]);
     }
     if (absolute && found.is_noise) {
         for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
@@ -1213,10 +1234,18 @@ std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     if (found.is_noise) {
         notes.emplace_back("it fits the record no better than it would fit noise, so there may be no motion in it");
     } else if (found.misfit) {
-        const auto what = static_cast<std::size_t>(*found.misfit);
-        notes.push_back(fmt::format(
-            "the residual is {:.2g} times the noise and follows {}: {}", found.noise / found.noise_without_misfit,
-            what == 1 ? "theta" : fmt::format("the {}", analysis::follows_names[what]), causes[what]));
+        std::vector<analysis::Follows> whats{*found.misfit};
+        whats.insert(whats.end(), found.other_misfits.begin(), found.other_misfits.end());
+        std::vector<std::string> names, questions;
+        for (const analysis::Follows what : whats) {
+            const auto i = static_cast<std::size_t>(what);
+            names.push_back(what == analysis::Follows::theta ? "theta"
+                                                             : fmt::format("the {}", analysis::follows_names[i]));
+            questions.emplace_back(causes[i]);
+        }
+        notes.push_back(fmt::format("the residual is {:.2g} times the noise and follows {}: {}",
+                                    found.noise / found.noise_without_misfit, fmt::join(names, " or "),
+                                    fmt::join(questions, " Or ")));
     } else if (found.is_unexplained) {
         notes.push_back(fmt::format(
             "neighbouring samples scatter by {:.3g} only, so the residual is not noise: another kind of system "
@@ -1238,6 +1267,9 @@ std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
             "the residual is correlated from sample to sample (noise with a memory or in M, another law of friction "
             "or a wrong guess); the errors are {:.2g} times wider because of that",
             found.widening));
+    }
+    if (found.noise_is_uneven && found.has_errors && !found.is_noise) {
+        notes.emplace_back("the noise is stronger in some parts of the record than in others; the errors include that");
     }
     if (found.M_is_noisy) notes.emplace_back("the errors ignore the noise of M: they may be far too small");
     if (fit.question.given.back() == 0.0) notes.emplace_back("offset is held at 0");
@@ -1278,6 +1310,12 @@ std::string fit_summary(const FitAnswer& fit) {
         } else {
             text += fmt::format("\n  the record says nothing about {}", name);
         }
+    }
+    if (!fit.cautious.empty()) {
+        std::vector<std::string> wider;
+        for (const auto& [name, error] : fit.cautious) wider.push_back(fmt::format("{} +- {:.2g}", name, error));
+        text += fmt::format("\n  if friction may fall with the speed or the spring be nonlinear: {}",
+                            fmt::join(wider, ", "));
     }
     for (const std::string& note : notes_of_fit(fit)) text += "\n  " + note;
     return text;
@@ -1321,6 +1359,11 @@ constexpr lua::Member fit_members[] = {
       "They are nil if the model is so wrong that they would mean nothing (fit.misfit). What the record cannot show they do "
       "not contain: friction that falls evenly with the speed looks like more Rd and less C.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
+    {lua::a_value<FitHandle, &FitAnswer::cautious>,
+     {"fit.cautious_error -> table",
+      "The standard errors that are more than 1.5 times wider if friction may fall with the speed, by up to Rd, or the spring "
+      "may be nonlinear, unseen in this record.",
+      DINAL_FIT "print(fit.cautious_error.zeta > fit.std_error.zeta)  --> true"}},
     {lua::a_value<FitHandle, silent_names>,
      {"fit.silent -> table",
       "The names of values that the record does not determine: Re of a free decay or of a motion without stops; "
