@@ -101,15 +101,6 @@ test("the friction of a link is at most its limit, also where its own load jumps
     near(run.link.friction:abs():max(), 0.1, tolerance)
 end)
 
-test("an event at the very end of a run is told in its direction, as in a longer run", function()
-    for direction, told in pairs { up = 1, down = 0, both = 1 } do
-        local events = { { when = function(t) return t - 3 end, direction = direction } }
-        for _, t_end in ipairs { 3, 4 } do
-            equal(#system(a):simulate { t_end = t_end, events = events }.events, told, direction)
-        end
-    end
-end)
-
 test("a mass is not told to rest for good when cubic samples exceed Re between two of them", function()
     local hump = excitation.samples { t = { 0, 1, 2, 3 }, M = { 0, 1, 1, 0 }, interpolation = "cubic", period = 3 }
     local peak = hump(1.5)
