@@ -278,4 +278,17 @@ test("a window that the square of a wide quantity decides is found, on whatever 
     end
 end)
 
+test("an event right before a kink of its function is located although the old formula overflows beyond it", function()
+    for _, w in ipairs { 1e-2, 5.5e-4, 1e-6 } do
+        local p = .7121358593554413
+        local run = system { I = 1, k = 4, C = .2 }:simulate { theta0 = -.95997455, t_end = 1.5, dt = .5,
+            events = { { when = function(t, theta, v) return exp(-math.abs((v - p) / w)) - .5 end } } }
+        local told = run.events:filter(function(e) return e.kind == "user" end)
+        equal(#told, 4)
+        for i, side in ipairs { -1, 1, 1, -1 } do
+            assert(math.abs((told[i].velocity - p) / w - side * math.log(2)) < 1e-3, i)
+        end
+    end
+end)
+
 finish()

@@ -14,23 +14,28 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
         const model::Crossing direction = wanted_[e].direction;
         Watch& watch = watches_[e];
         const auto when = [&](const Moment& at) { return value(e, at); };
-        const Nodes values = segment.at_nodes(when, point_);
+        Nodes values = segment.at_nodes(when, point_);
+        const auto anywhere = segment.anywhere(when, point_);
+        // Beyond a changed condition the formula of the old piece, which may grow without bound, says nothing.
+        const double end = ending.by == By::condition ? ending.x : 1;
+        const auto place = [end](double x) { return end == 1 ? x : -1 + (x + 1) * ((end + 1) / 2); };
+        const auto exact = [&](double x) { return anywhere(place(x)); };
+        if (end < 1) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
         if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
             return {.good = false};
-        const auto exact = segment.anywhere(when, point_);
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
         Half half = watch.half;
         while (const auto x = curve.leaves(half, from)) {
-            if (!(*x < before)) break;
+            if (!(place(*x) < before)) break;
             if (watch.sent_back && !curve.is_clearly(half, *x)) return {.again = e};
             if (direction == model::Crossing::both || (half < 0) == (direction == model::Crossing::up)) {
-                wanted_ones.emplace_back(e, *x);
+                wanted_ones.emplace_back(e, place(*x));
                 break;
             }
             if (unwanted.size() > most_passages) break;
             if (watch.half == 0) watch.half = half;
-            unwanted.emplace_back(e, *x);
+            unwanted.emplace_back(e, place(*x));
             half = -half;
             from = *x;
         }
