@@ -98,8 +98,7 @@ double UserEvents::rounding_of(std::size_t event, const Now& now) const {
 /// stopped it.
 bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& last, double h, Balances& balances,
                            const Frame& frame) {
-    constexpr double soon = 1e-4;
-    const double step = soon * h;
+    constexpr double soonest = 1e-13, soon = 1e-4, few = 16, peaked = 1e-3;
     const std::size_t n = mechanics_.bodies();
     Balance found;
     if (!balances.at_present(now, frame, last, found)) return true;
@@ -113,7 +112,18 @@ bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& las
         for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n + k] = now.y[2 * n + k] + after * rates[k];
         return value(event, {now.t.hi + after, Side::at, y});
     };
-    return came_from_[event] * (later(step) - later(-step)) < -watches_[event].rounded;
+    const double rounded = watches_[event].rounded;
+    double change = later(soon * h) - later(-soon * h);
+    const double bend = std::fabs(later(soon * h) + later(-soon * h) - 2 * later(0));
+    if (bend > peaked * std::max(std::fabs(later(h)), std::fabs(later(-h)))) {
+        // This step passes a narrow peak: takes the shortest one that changes the value clearly.
+        const double clear = few * (rounded + rounding_of(event, now));
+        double step = std::max(soonest * h, few * rounding * std::fabs(now.t.hi));
+        for (change = 0; std::fabs(change) <= clear && step < soon * h; step *= 10) {
+            change = later(step) - later(-step);
+        }
+    }
+    return came_from_[event] * change < -rounded;
 }
 
 std::vector<std::size_t> UserEvents::passing(const Now& now, const Segment& last, double h, Balances& balances,
