@@ -370,8 +370,15 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
         const auto differ = [](const Slope& s) { return !s.alike && s.bend > little; };
         double step = h;
         std::optional<Slope> near = slope(step), far = order == 2 ? near : slope(2 * step);
+        // The slopes of a smooth map hardly depend on the step. A kink or a window that only one side reaches is no
+        // event, but changes them.
+        constexpr double close = 1e-5, noise = 1e-12;
+        const auto disagree = [&] {
+            const VectorXd apart = near->value - far->value;
+            return size_of_step(apart) > close * (1 + size_of_step(near->value)) + noise / step;
+        };
         // If the events differ, a grazing, a stop or a switch lies between both sides.
-        while (order != 2 && near && far && (differ(*near) || differ(*far))) {
+        while (order != 2 && near && far && (differ(*near) || differ(*far) || disagree())) {
             step /= 10;
             if (step < least) return {};
             near = slope(step), far = slope(2 * step);

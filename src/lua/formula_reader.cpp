@@ -514,7 +514,7 @@ private:
         } else {
             for (const Known& known : {x.known, y.known}) {
                 const bool far = known.kind == Known::Kind::whole && known.constant &&
-                                 std::fabs(static_cast<double>(model::to_whole(known.value))) > 0x1p53;
+                                 std::fabs(static_cast<double>(model::to_whole(known.value))) >= 0x1p53;
                 if (far) throw Obstacle{"it compares a whole number beyond 2^53"};
             }
             a = float_register(x.known, x.place, 0, Op::exact), b = float_register(y.known, y.place, 1, Op::exact);

@@ -147,6 +147,15 @@ void Witness::repeat_kept() {
     }
 }
 
+bool Witness::repeat_end(bool last) {
+    if (asked_ < 2 || testimony_->found) return !testimony_->found;
+    std::size_t place = first_place;
+    for (std::size_t later = first_milestone; last && later < asked_in_turn; ++later) {
+        if ((known_ >> later & 1U) != 0) place = later;
+    }
+    return repeats_answer(place);
+}
+
 namespace {
 
 bool has_functions(const model::Oscillator& system) {
@@ -212,9 +221,21 @@ UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
     if (auto made = model::Oscillator::make(parameters)) system_ = *made;
 }
 
+void Witnesses::ask_others_after(Witness& writer) {
+    if (writer.read() != nullptr) return;
+    for (const bool last : {false, true}) {
+        if (!writer.repeat_end(last)) return;
+        for (const auto& reader : witnesses_) {
+            if (reader.get() == &writer) continue;
+            if (!reader->repeat_end(false) || !reader->repeat_end(true)) return;
+        }
+    }
+}
+
 std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
         for (const auto& witness : witnesses_) witness->repeat_kept();
+        for (const auto& writer : witnesses_) ask_others_after(*writer);
     }
     testimony_->over = true;
     return testimony_->found;

@@ -55,6 +55,8 @@ public:
 
     /// Repeats the first evaluation at the end of the run.
     void repeat_kept();
+    /// Repeats the first evaluation, or the latest one kept. Returns false if the answer differs.
+    bool repeat_end(bool last);
 
 private:
     /// The arguments and result of an evaluation.
@@ -110,6 +112,10 @@ public:
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
 
 private:
+    /// A variable that one function writes may have had the same value in all evaluations of another one, such as on a
+    /// run of one stretch. So the writer is evaluated early and late, and the others after it. A formula cannot write.
+    void ask_others_after(Witness& writer);
+
     std::shared_ptr<Testimony> testimony_ = std::make_shared<Testimony>();
     std::vector<std::shared_ptr<Witness>> witnesses_ = {};
     std::size_t states_;

@@ -241,4 +241,26 @@ test("a mass at rest is not at rest for good while an act is still to come", fun
     assert(run:continue { t_end = 60 }.a.theta:max() > 0.5)
 end)
 
+test("an act at a jump or on a narrow peak of its event's function happens once each time it is passed", function()
+    local p, w = .6868564635571865, .0004833638909349485
+    local function jumps(t, theta) return ((theta > p) ~= (theta > p + w) and 1 or 0) - .5 end
+    for _, theta0 in ipairs { -.8626593626879944, -1, -.9 } do
+        local count = 0
+        local run = system { I = 1, k = 4, C = .2 }:simulate { theta0 = theta0, t_end = 1.5, dt = .5,
+            events = { { when = jumps, act = function(t, theta, v) count = count + 1 return theta, v + .05 end } } }
+        equal(run.status, "end", run.outcome)
+        equal(count, 2)
+    end
+    for _, width in ipairs { 1e-2, 1e-4, 2e-6 } do
+        local count = 0
+        local rig = system { bodies = { a = { I = 1, k = 4, C = .2 }, b = { I = 2, k = 3, C = .1 } },
+            links = { s = { "a", "b", k = 5, C = .1 } } }
+        local run = rig:simulate { theta0 = { a = -1, b = .3 }, t_end = 1, dt = .5, events = { {
+            when = function(t, theta) return 1 / (1 + ((theta.b + .1) / width) ^ 2) - .5 end,
+            act = function(t, theta, v) count = count + 1 v.a = v.a + .05 end } } }
+        equal(run.status, "end", run.outcome)
+        equal(count, 2)
+    end
+end)
+
 finish()

@@ -96,4 +96,26 @@ test("a variable that one function writes and another reads has its present valu
     assert(right >= 28 and right + told == #names * (#names - 1), right)
 end)
 
+test("a variable that had one value in all evaluations of its reader, on a run of a few stretches, is detected", function()
+    local p
+    local function write(t) p = t < 1 and 1 or 2 return 0 end
+    local function end_of(o, options)
+        p = 1
+        o.theta0, o.t_end, o.dt = -1, 3, 1
+        return system(options):simulate(o)
+    end
+    local spring = { I = 1, k = 4, C = .2 }
+    local runs = {
+        end_of({ M = function(t) return p * math.sin(t) end, base = write }, spring),
+        end_of({ states = { w = { start = 0, rate = write } } },
+            { I = 1, k = 4, friction = friction.law(function(speed) return .02 * p + .01 * speed end) }),
+        end_of({ base = write, M = function(t, theta, v, z) return z.q end,
+            states = { q = { start = 0, rate = function() return p * .3 end } } }, spring),
+        end_of({ states = { w = { start = 0, rate = write } },
+            events = { { when = function(t, theta) return theta - .2 * p end, act = function(t, theta, v) return theta, .9 * v end } } },
+            { I = 1, k = 4 }),
+    }
+    for i, run in ipairs(runs) do assert(run.outcome:find("depends on more than its arguments", 1, true), i .. ": " .. run.outcome) end
+end)
+
 finish()

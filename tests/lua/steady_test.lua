@@ -323,6 +323,32 @@ test("multipliers near a grazing are those of the motion, from whatever start it
     end
 end)
 
+test("multipliers beside a kink or a window that the motion does not reach are those of the motion", function()
+    local k, C, omega = 2.3, .3, 1.1
+    local amplitude = 1 / math.sqrt((k - omega ^ 2) ^ 2 + (C * omega) ^ 2)
+    -- Both have the magnitude exp(-C T/2), and the angle of the damped frequency.
+    local T = 2 * math.pi / omega
+    local abs, angle = math.exp(-C * T / 2), math.sqrt(k - C ^ 2 / 4) * T
+    for _, gap in ipairs { 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8 } do
+        local a = amplitude * (1 + gap)
+        local loads = {
+            kink = function(t, theta, v) return math.sin(omega * t) - 20 * math.max(0, theta - a) end,
+            window = function(t, theta, v) return math.sin(omega * t) - (theta > a and 2 or 0) end,
+        }
+        for name, M in pairs(loads) do
+            local phase = math.atan(C * omega, k - omega ^ 2)
+            local s = system { I = 1, k = k, C = C }:steady { M = M, period = T,
+                theta0 = -amplitude * math.sin(phase), velocity0 = amplitude * omega * math.cos(phase) }
+            if s.multipliers then
+                assert(math.abs(s.multipliers[1].abs - abs) < 1e-4, name .. gap)
+                assert(math.abs(s.multipliers[1].re - abs * math.cos(angle)) < 1e-4, name .. gap)
+            else
+                assert(gap < 1e-5, name .. gap)
+            end
+        end
+    end
+end)
+
 test("linear growth has the rate of its closed form", function()
     local uneven = friction.asymmetric { forward = { Rd = 0.1 }, backward = { Rd = 0.3 } }
     near(system{ I = 1, k = 1, friction = uneven }:steady{ M = excitation.harmonic{ omega = 1 } }.growth, math.pi - 0.8, 1e-9)

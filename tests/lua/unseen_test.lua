@@ -254,4 +254,51 @@ test("an unproven function is reported as the gap", function()
     near(sampled { k = 1, friction = function(speed) return .1 + speed end }, .005, 1e-12)
     equal(sampled { k = 1, Rd = .1 }, nil)
 end)
+
+test("a window that the square of a wide quantity decides is found, on whatever swing", function()
+    -- The same windows, written by two lines each, have long been found.
+    local function square(x) if x * x < 1 then return (1 - x * x) ^ 2 end return 0 end
+    local function lines(x) if x > -1 and x < 1 then return (1 - x * x) ^ 2 end return 0 end
+    local function root(x) return math.sqrt(math.max(0, 1 - x * x)) end
+    local function root_of_lines(x) if x > -1 and x < 1 then return math.sqrt(1 - x * x) end return 0 end
+    local swing = { I = 1, k = 4, C = .2 }
+    for _ = 1, 30 do
+        local p, w = lot(-.5, .5), 10 ^ lot(-5, -1.5)
+        for _, pair in ipairs { { square, lines }, { root, root_of_lines } } do
+            local ends = {}
+            for i, f in ipairs(pair) do
+                local function M(t, theta, v) return .1 / w * f((theta - p) / w) end
+                ends[i] = system(swing):simulate { M = M, theta0 = -1, t_end = 4, dt = 1 }
+            end
+            local a, b = ends[1], ends[2]
+            local apart = math.abs(a.theta[#a.theta] - b.theta[#b.theta])
+            local gap = math.max(a.gap or 0, b.gap or 0)
+            assert(apart < 1e-8 or gap > w / 4, ("p %.17g w %.17g: %g apart, gap %g"):format(p, w, apart, gap))
+        end
+    end
+end)
+
+test("an event right before a kink of its function is located although the old formula overflows beyond it", function()
+    for _, w in ipairs { 1e-2, 5.5e-4, 1e-6 } do
+        local p = .7121358593554413
+        local run = system { I = 1, k = 4, C = .2 }:simulate { theta0 = -.95997455, t_end = 1.5, dt = .5,
+            events = { { when = function(t, theta, v) return exp(-math.abs((v - p) / w)) - .5 end } } }
+        local told = run.events:filter(function(e) return e.kind == "user" end)
+        equal(#told, 4)
+        for i, side in ipairs { -1, 1, 1, -1 } do
+            assert(math.abs((told[i].velocity - p) / w - side * math.log(2)) < 1e-3, i)
+        end
+    end
+end)
+
+test("a relay whose function jumps past both thresholds switches once", function()
+    for _ = 1, 20 do
+        local a, b = lot(.2, .4), lot(.5, .9)
+        local run = system { I = 1, k = 0, C = .1 }:simulate { velocity0 = 1, t_end = 1.5, dt = .5,
+            M = excitation.relay { on = .6, off = .4, amplitude = { .3, 0 }, start = "off",
+                of = function(...) local theta = select(2, ...) return theta > a and theta < b and 1 or 0 end } }
+        equal(#of_kind(run, "switch"), 2)
+    end
+end)
+
 finish()

@@ -136,6 +136,12 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     double t = at.t;
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
+    if (forgotten_ && last_.t == at.t) {
+        // A condition was crossed here, and then an action changed the state: the rounding of the angles must not lead
+        // it back.
+        constexpr double past_rounding = 1e-12;
+        for (std::size_t i = 0; i < n; ++i) y[i] += past_rounding * unit_ * y[n + i];
+    }
     std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
     standing_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {

@@ -98,30 +98,75 @@ private:
         constexpr double few = 64;
         size_ = cheb::size(series_);
         floor_ = std::max(few * rounding * size_, rounded);
-        smooth_ = cheb::tail(series_) <= 1e-9 * size_;
+        smooth_ = is_smooth();
+    }
+    /// Returns whether the series has decayed, or still falls steeply at its end; that of rounding stays level.
+    [[nodiscard]] bool is_smooth() const {
+        constexpr double decayed = 1e-9, decaying = 1e-6, steeply = 64;
+        const double tail = cheb::tail(series_);
+        double earlier = 0;
+        for (std::size_t k = node_count / 2; k < node_count - 5; ++k) {
+            earlier = std::max(earlier, std::fabs(series_[k]));
+        }
+        return tail <= decayed * size_ || (tail <= decaying * size_ && earlier > steeply * tail);
     }
     [[nodiscard]] Half half_of(double value, Half otherwise) const {
         return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
     }
-    /// Finds candidate zeros by the series; the function itself, which has more digits, decides.
+    struct Part {
+        double middle = 0, half = 1;
+        [[nodiscard]] double place(double x) const { return middle + half * x; }
+        [[nodiscard]] double inside(double x) const { return (x - middle) / half; }
+        [[nodiscard]] double end() const { return middle + half; }
+    };
+    /// The first zero by the series. Where the series is no greater than its own error, as at the foot of a narrow
+    /// window that the square of a wide quantity decides, the function is fitted again on that part alone.
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
-        Nodes values = values_;
-        for (double& each : values) each *= half;
-        Bounded<points> curve(half, series_, derivative(series_), values);
-        curve.raise_floor(rounded_);
-        double near = 1e-7;
+        constexpr double few = 64, shortest = 1e-10;
+        const double error = few * tail(series_);
+        if (error <= floor_) return of_series(half, start, {}, series_, values_);
+        const auto raised = [&](double sign, double by) {
+            Series moved = series_;
+            moved[0] += half * by;
+            return Bounded<points>(sign * half, moved, derivative(moved));
+        };
+        const auto clear = raised(1, -error), unclear = raised(-1, -error), passed = raised(1, error);
         while (start < 1) {
-            const auto x = first_below(curve, start);
-            if (!x) break;
+            const auto from = first_below(clear, start);
+            if (!from) break;
+            const double first = std::max(start, *from), inside = std::min(1.0, first + shortest);
+            const auto back = first_below(unclear, inside), through = first_below(passed, inside);
+            const double last = std::min({1.0, back.value_or(1), through.value_or(1)});
+            const Part part{(first + last) / 2, (last - first) / 2};
+            Nodes values;
+            for (std::size_t j = 0; j < node_count; ++j) values[j] = exact_(part.place(nodes[j]));
+            if (const auto x = of_series(half, first, part, fit(values), values)) return x;
+            if (const auto x = refined(half, first, last)) return x;
+            start = last;
+        }
+        return {};
+    }
+    /// Finds candidate zeros by the series of a part; the function itself, which has more digits, decides.
+    [[nodiscard]] std::optional<double> of_series(Half half, double start, const Part& part, const Series& series,
+                                                  Nodes values) const {
+        using namespace cheb;
+        for (double& each : values) each *= half;
+        Bounded<points> curve(half, series, derivative(series), values);
+        curve.raise_floor(rounded_);
+        double near = 1e-7 * part.half;
+        while (start < part.end()) {
+            const auto found = first_below(curve, std::max(-1.0, part.inside(start)));
+            if (!found) break;
+            const double x = part.place(*found);
             if (usual_ > 0) {
-                const auto zero = refined(half, std::max(start, *x - usual_), std::min(1.0, *x + usual_));
+                const auto zero = refined(half, std::max(start, x - usual_), std::min(part.end(), x + usual_));
                 if (zero) return zero;
             }
-            double a = std::max(start, *x - near);
-            while (a > start && half * exact_(a) < -rounded_) a = std::max(start, *x - (near *= 2));
+            double a = std::max(start, x - near);
+            while (a > start && half * exact_(a) < -rounded_) a = std::max(start, x - (near *= 2));
             if (half * exact_(a) < -rounded_) return a;  // the value was below zero earlier
-            const double b = std::min(1.0, *x + near);
+            const double b = std::min(part.end(), x + near);
             if (const auto zero = refined(half, a, b)) return zero;
             start = b;
             near *= 2;

@@ -89,7 +89,8 @@ private:
             const Series series = cheb::fit(angles);
             const double tail = cheb::tail(series), size = cheb::size(series);
             const double late = std::max(std::fabs(from), std::fabs(to));
-            const bool smooth = tail <= enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
+            const double allowed = enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
+            const bool smooth = tail <= allowed || tail <= allowed + enough * rounded_at(from + h);
             if (told == Told::strays) least = model::never;  // a series that missed a detail is not a reference
             ++in_vain;
             const double off = smooth ? 0 : tail / size;
@@ -107,10 +108,26 @@ private:
         return best;
     }
 
+    /// The rounding of the steps of the angle's formulas, which is large in the foot of a narrow peak: that of
+    /// exp(-576) is 576 times that of 1.
+    double rounded_at(double t) {
+        double sum = 0;
+        for (const model::Component& c : angle_.components()) {
+            const auto* script = std::get_if<model::Scripted>(&c.term);
+            model::Formula* formula = script != nullptr ? script->function->read() : nullptr;
+            if (formula == nullptr || formula->gave_up()) continue;
+            unseen_.begin(*formula, nullptr);
+            unseen_.give(0, {t - script->delay});
+            const double rounded = std::fabs(c.gain) * unseen_.rounded();
+            if (std::isfinite(rounded)) sum += rounded;
+        }
+        return sum;
+    }
+
     enum class Told { unknown, strays, all };
     /// Decides whether the functions of the angle follow the series between its nodes.
     Told by_series(const Series& series, double from, double h) {
-        constexpr double clearly = 64, roundings_inside = 16;
+        constexpr double clearly = 64, roundings_inside = 16, few_roundings = 16;
         constexpr int search_budget = 64;
         const double late = std::max(std::fabs(from), std::fabs(from + 2 * h));
         Told told = Told::all;
@@ -125,8 +142,9 @@ private:
             unseen_.begin(*formula, nullptr);
             unseen_.give(0, {from + h - script->delay, h - roundings_inside * rounding * late});
             const double size = cheb::size(series);
-            const double allowed =
+            double allowed =
                 (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
+            if (const double rounded = unseen_.rounded(); std::isfinite(rounded)) allowed += few_roundings * rounded;
             if (unseen_.is_told(allowed, 0)) continue;
             const auto found = unseen_.search({}, search_budget, [=](const Series&) { return allowed; });
             if (found.place) told = Told::strays;

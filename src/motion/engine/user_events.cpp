@@ -14,23 +14,28 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
         const model::Crossing direction = wanted_[e].direction;
         Watch& watch = watches_[e];
         const auto when = [&](const Moment& at) { return value(e, at); };
-        const Nodes values = segment.at_nodes(when, point_);
+        Nodes values = segment.at_nodes(when, point_);
+        const auto anywhere = segment.anywhere(when, point_);
+        // Beyond a changed condition the formula of the old piece, which may grow without bound, says nothing.
+        const double end = ending.by == By::condition ? ending.x : 1;
+        const auto place = [end](double x) { return end == 1 ? x : -1 + (x + 1) * ((end + 1) / 2); };
+        const auto exact = [&](double x) { return anywhere(place(x)); };
+        if (end < 1) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
         if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
             return {.good = false};
-        const auto exact = segment.anywhere(when, point_);
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
         Half half = watch.half;
         while (const auto x = curve.leaves(half, from)) {
-            if (!(*x < before)) break;
+            if (!(place(*x) < before)) break;
             if (watch.sent_back && !curve.is_clearly(half, *x)) return {.again = e};
             if (direction == model::Crossing::both || (half < 0) == (direction == model::Crossing::up)) {
-                wanted_ones.emplace_back(e, *x);
+                wanted_ones.emplace_back(e, place(*x));
                 break;
             }
             if (unwanted.size() > most_passages) break;
             if (watch.half == 0) watch.half = half;
-            unwanted.emplace_back(e, *x);
+            unwanted.emplace_back(e, place(*x));
             half = -half;
             from = *x;
         }
@@ -93,8 +98,7 @@ double UserEvents::rounding_of(std::size_t event, const Now& now) const {
 /// stopped it.
 bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& last, double h, Balances& balances,
                            const Frame& frame) {
-    constexpr double soon = 1e-4;
-    const double step = soon * h;
+    constexpr double soonest = 1e-13, soon = 1e-4, few = 16, peaked = 1e-3;
     const std::size_t n = mechanics_.bodies();
     Balance found;
     if (!balances.at_present(now, frame, last, found)) return true;
@@ -108,7 +112,18 @@ bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& las
         for (std::size_t k = 0; k < rates.size(); ++k) y[2 * n + k] = now.y[2 * n + k] + after * rates[k];
         return value(event, {now.t.hi + after, Side::at, y});
     };
-    return came_from_[event] * (later(step) - later(-step)) < -watches_[event].rounded;
+    const double rounded = watches_[event].rounded;
+    double change = later(soon * h) - later(-soon * h);
+    const double bend = std::fabs(later(soon * h) + later(-soon * h) - 2 * later(0));
+    if (bend > peaked * std::max(std::fabs(later(h)), std::fabs(later(-h)))) {
+        // This step passes a narrow peak: takes the shortest one that changes the value clearly.
+        const double clear = few * (rounded + rounding_of(event, now));
+        double step = std::max(soonest * h, few * rounding * std::fabs(now.t.hi));
+        for (change = 0; std::fabs(change) <= clear && step < soon * h; step *= 10) {
+            change = later(step) - later(-step);
+        }
+    }
+    return came_from_[event] * change < -rounded;
 }
 
 std::vector<std::size_t> UserEvents::passing(const Now& now, const Segment& last, double h, Balances& balances,
