@@ -135,6 +135,12 @@ TEST_CASE("dinal1989 agrees with a plain transcription of the listing over hundr
                     REQUIRE(run.rows(i, 4) == 0.0 - c.gamma * Listing::SG(listing.V));
                     listing.step();
                 }
+                // An event is told at the end of the step in which the velocity has changed its sign.
+                for (const Event& event : run.events) {
+                    const auto i = static_cast<Eigen::Index>(std::lround(event.t / c.h));
+                    CHECK(event.theta == run.rows(i, 1));
+                    if (event.kind == EventKind::turn) CHECK(run.rows(i - 1, 2) * run.rows(i, 2) < 0);
+                }
             }
         }
     }

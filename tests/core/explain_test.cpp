@@ -228,6 +228,7 @@ TEST_CASE("the period of a sum is the shortest that all terms share", "[explain]
     CHECK(period_from(sum, 0) == Approx(2).epsilon(1e-12));
     CHECK(period_from(sum + made(Constant{3}), 0) == Approx(2).epsilon(1e-12));
     CHECK(period_from(harmonic(1, 2 * pi) + harmonic(1, std::sqrt(2.0)), 0) == 0);
+    CHECK(period_from(harmonic(1, 2 * pi) + harmonic(1, 2 * pi * (1 + 1e-6)), 0) == 0);  // a beat, however slow
     CHECK(period_from(made(Square{1, 1.5}), 0) == 1.5);
     CHECK(period_from(made(Constant{3}), 0) == 0);
     CHECK(period_from({}, 0) == 0);

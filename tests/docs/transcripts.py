@@ -124,7 +124,8 @@ def check(path):
     with open(path, encoding="utf-8") as file:
         text = file.read()
     count, complaints, fresh, done = 0, [], "", 0
-    folder, prompt = sandbox(), None
+    prompt = None
+    folder = sandbox() if re.search(r"^```(console|lua)$", text, re.M) else None
     try:
         if not path.endswith("manual.md") and "/manual/" not in path:  # help_test runs its examples
             complaints += lua_complaint(text, folder)
@@ -159,7 +160,8 @@ def check(path):
         if prompt:
             prompt.leave()
     finally:
-        shutil.rmtree(folder)
+        if folder:
+            shutil.rmtree(folder)
     return count, complaints, fresh + text[done:]
 
 

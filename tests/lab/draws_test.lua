@@ -106,4 +106,16 @@ for _, set in ipairs(sets) do
   end)
 end
 
+support.test("what two mistakes may have made is told of both, the nearer one first", function()
+  local question = { sheet = {}, answer = 1, tolerance = 0.01, mistakes = { { 2.02, "the farther" }, { 2, "the nearer" } } }
+  support.equal(select(2, course.verdict(question, 2.001)), "the nearer. Or: the farther")
+end)
+
+support.test("an absolute tolerance is that of the answer, and of a mistake ten times as great ten times as much", function()
+  local question = { sheet = {}, answer = 1, within = 0.1, mistakes = { { 10, "ten times" } } }
+  support.equal((course.verdict(question, 1.05)), true)
+  support.equal((course.verdict(question, 1.5)), false)
+  support.equal(select(2, course.verdict(question, 10.5)), "ten times")
+end)
+
 support.finish()

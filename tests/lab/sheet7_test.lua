@@ -46,4 +46,4 @@ walk.sheet("7-friction-damper", function(session)
     { "7f", alone, "without the damper" },
     { "7f", alone/glued, "glued together" },
   }
-end, { 4711, 20260017 })  -- each takes seconds; draws_test.lua has other draws
+end, { 20260017 })  -- it takes seconds; draws_test.lua has other draws

@@ -35,7 +35,7 @@ test("the mass of an SVG is at the angles of run:at, at equal steps of time", fu
         local part = (run:at((i - 1) * 10 / 125) - low) / (high - low)
         near(tonumber(mass[i]), right + part * (left - right), 0.11)  -- a digit behind the point
     end
-    has(svg, 'dur="5.000s"', 'role="img"')
+    has(svg, 'dur="5.000s"', 'role="img"', ">10</text>")
     assert(svg:match("<desc>.-</desc>"):find("Below, θ from %S+ to %S+ over t from 0 to 10%."), "the axes in words")
 end)
 

@@ -14,9 +14,7 @@ local function same_rows(a, b)
 end
 
 for name, integrator in pairs {
-    exact = integrator.exact {},
-    spectral = integrator.spectral {},
-    rk4 = integrator.rk4 { h = 0.001 },
+    -- the others: resume_test.cpp
     dopri5 = integrator.dopri5 { tolerance = 1e-14 },
     dinal1989 = integrator.dinal1989 { h = 0.01 },
 } do
@@ -41,6 +39,12 @@ test("a run with a list of times can be continued with another list", function()
     equal(#bare, 3)
     equal(bare.t_end, 9.0)
     near((bare:at(7.7)), whole.theta[6], 1e-12)
+end)
+
+test("a run with times that an event has stopped goes on with the new times alone", function()
+    local stop = { { when = function(t) return t - 2.5 end, stop = true } }
+    local first = nd:simulate { M = M, theta0 = 2, times = { 1, 2, 3, 4 }, events = stop }
+    equal(first:continue { times = { 3.5, 5 } }.t, vector { 1, 2, 3.5, 5 })
 end)
 
 test("a run interrupted by an error of M can be continued to its end", function()

@@ -155,6 +155,9 @@ test("what happens right at the end of a run is told by it, by every integrator,
         go(flat, { velocity0 = t / 2, t_end = t, events = user }, general, "rest user")
         go(still, { theta0 = 0.9, t_end = t, events = user }, general, "user")
         go(still, { theta0 = 0.9, t_end = t, events = { { when = user[1].when, stop = true } } }, general, "user")
+        for direction, told in pairs { up = "user", down = "" } do
+            go(still, { theta0 = 0.9, t_end = t, events = { { when = user[1].when, direction = direction } } }, general, told)
+        end
         -- A release is the first moment of a slip: the run that goes on tells it.
         go(flat, { M = function(at) return 0.5 / t * at end, t_end = t, events = user }, general, "user")
     end

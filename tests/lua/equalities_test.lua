@@ -81,6 +81,37 @@ test("the energy of each part of a system is its row in the energy of all", func
     end
 end)
 
+test("column M is M at the rows, also of a stuck mass, and M of an event is M at its time", function()
+    local methods = { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-10 } }
+    for _, method in ipairs(methods) do
+        for _, Re in ipairs { 0, 1.9 } do
+            local sys = system { I = 1, k = 4, C = 0.1, Rd = Re / 2, Re = Re }
+            local run = sys:simulate { M = sine, theta0 = 1, t_end = 9, dt = 0.0371, integrator = method }
+            for i, t in ipairs(run.t) do near(run.M[i], sine(t), tolerance) end
+            assert(#run.events > 3)
+            for _, event in ipairs(run.events) do near(event.M, sine(event.t), 1e-6) end
+        end
+    end
+end)
+
+test("the friction of a link is at most its limit, also where its own load jumps with the slip and holds it", function()
+    local function M(t, theta, velocity) return velocity.a > velocity.b and -2 or 2 end
+    local run = pair({ I = 1 }, { I = 1 }, { Rd = 0.1 }):simulate { M = { link = M, a = sine }, velocity0 = { a = 1 }, t_end = 5, dt = 0.1 }
+    near(run.link.velocity[#run], 0, 1e-12)
+    near(run.link.friction:abs():max(), 0.1, tolerance)
+end)
+
+test("a mass is not told to rest for good when cubic samples exceed Re between two of them", function()
+    local hump = excitation.samples { t = { 0, 1, 2, 3 }, M = { 0, 1, 1, 0 }, interpolation = "cubic", period = 3 }
+    local peak = hump(1.5)
+    assert(peak > 1.1, peak)
+    for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        local run = system { I = 1, k = 1, Rd = 0.5, Re = 1.05 }:simulate { M = hump, t_end = 9, integrator = method }
+        equal(run.events[1].kind, "slip")
+        near(hump(run.events[1].t), 1.05, 1e-6)
+    end
+end)
+
 -- ---- a run that goes on
 
 local function averaging(body)

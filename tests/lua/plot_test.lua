@@ -108,6 +108,8 @@ test("the dead zone is drawn where the mass can rest, and not at all if it chang
     equal(zone({ M = function() return 5 end }, system { I = 1, k = 2, Rd = 1 }), "2 to 3")
     equal(zone { base = -5 }, "2 to 3")
     equal(zone { M = 6, belt = 0 }, "2.5 to 3.25")
+    local uneven = { forward = { Rd = 1 }, backward = { Rd = 0.5 } } -- the spring pulls forward where theta < 0
+    equal(zone({ theta0 = 1 }, system { I = 1, k = 2, friction = friction.asymmetric(uneven) }), "-0.5 to 0.25")
     equal(zone { M = math.sin }, nil)
     equal(zone { M = excitation.pulse { amplitude = 5, at = 1, width = 1 } }, nil)
     equal(zone { base = math.sin }, nil)

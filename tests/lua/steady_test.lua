@@ -300,6 +300,16 @@ test("the limit of a load before its jump at the end of the period counts for th
     end
 end)
 
+test("what a base does counts for the range of rest as the load -I a", function()
+    local sys, shake = system{ I = 2, k = 4, Rd = 0.5 }, excitation.harmonic{ amplitude = 0.1, omega = 1.3 }
+    for by, half in pairs{ [2] = 0.5, [0] = 0.3 } do -- the load cancels the base, or there is none: Re/k less |M - I a|/k
+        local s = sys:steady{ M = by*shake, base = shake }
+        equal(s.status, "adheres")
+        near(s.rest.upper, half/4, 1e-12)
+        near(s.rest.lower, -half/4, 1e-12)
+    end
+end)
+
 test("multipliers near a grazing are those of the motion, from whatever start it was found", function()
     -- This motion keeps 1e-3 from the speed of the belt (di Bernardo, Kowalczyk and Nordmark 2003: grazing at 1.7077997).
     -- The values are those of the variational equation, by an integrator of order 8.

@@ -128,6 +128,10 @@ assert(u:min() >= 0 and u:max() < 1)
 -- Five standard errors: 1/sqrt(12 n) of a mean, std/sqrt(n), std/sqrt(2 n).
 assert(math.abs(u:mean() - 0.5) < 5 / math.sqrt(12 * 20000))
 assert(math.abs(n:mean() - 1) < 5 * 2 / math.sqrt(20000) and math.abs(n:std() - 2) < 5 * 2 / math.sqrt(40000))
+-- Neighbours have nothing to do with each other: they are made in pairs.
+local together = 0
+for i = 2, #n do together = together + (n[i] - 1) * (n[i - 1] - 1) / 4 end
+assert(math.abs(together) < 5 * math.sqrt(20000), together)
 raises(function() return vector.random{ n = 2, seed = 1, from = 0, to = -1 } end,
     "from = 0 must not be greater than to = -1")
 raises(function() return vector.random{ n = 2, seed = 1, from = 3 } end, "from = 3 must not be greater than to = 1")

@@ -167,16 +167,18 @@ class SweepFiles(AtHome):
 
     def test_another_sweep_is_refused(self):
         self.killed_after(2)
-        self.write(SCRIPT.replace("math.sin", "math.cos"), workers=2)
+        other = SCRIPT.replace("math.sin", "math.cos")
+        self.write(other, workers=2)
         code, _, err = self.run_script()
         self.assertEqual(code, 1)
         self.assertIn("map.lua:2: sweep: 'map.csv.part' holds the points of another sweep", err)
         self.part.unlink()
         self.assertEqual(self.run_script()[0], 0)
-        self.write(SCRIPT.replace("0.1, 2, 30", "0.1, 3, 30"), workers=2)
-        code, _, err = self.run_script()
-        self.assertEqual(code, 1)
-        self.assertIn("'map.csv' is there, and is not the result of this sweep; remove it, or give another file", err)
+        for old, new in (("0.1, 2, 30", "0.1, 3, 30"), ("file =", "seed = 2, file =")):
+            self.write(other.replace(old, new), workers=2)
+            code, _, err = self.run_script()
+            self.assertEqual(code, 1)
+            self.assertIn("'map.csv' is there, and is not the result of this sweep; remove it, or give another file", err)
 
     def test_lines_may_move_and_the_sweep_is_the_same(self):
         code, out, _ = self.run_script()

@@ -39,6 +39,7 @@ OTHER = {
                  "s:simulate{ theta0 = 0.1, t_end = 0.7, dt = 0.7 }.theta[2]"),
     "an excitation": ("local c = VALUE local M = excitation.scripted(function(t) return c*t end)", RUN),
     "samples": ("local M = excitation.samples{ t = vector.linspace(0, 1, 100), M = vector.linspace(0, VALUE, 100) }", RUN),
+    "samples of a file": ("local f = io.open('s.csv', 'w') f:write('t,M\\n0,0\\n1,VALUE\\n') f:close() local M = excitation.samples 's.csv'", RUN),
     "a controller that samples":
         ("local c = VALUE local M = excitation.sampled(function(t, x) return c*x end, { every = 0.1 })", RUN),
     "a controller with a dead time":

@@ -131,6 +131,7 @@ class Notices(AtHome):
         self.assertEqual(terminal.enter(":history").split(), ["1", "x", "=", "1", "2", "y", "=", "2"])
         self.assertEqual(terminal.enter(":history 1").split(), ["2", "y", "=", "2"])
         self.assertEqual(terminal.enter(":edit 1"), "x = 5")
+        self.assertEqual(terminal.enter(":history 1").split(), ["3", "x", "=", "5"])
         self.assertEqual(terminal.enter("x"), "5")
         self.assertIn("from 1 to", terminal.enter(":edit 17"))
 

@@ -205,8 +205,8 @@ class Objects(unittest.TestCase):
         self.assertEqual([len(one.told["plot"]) for one in two], [1, 1])
         with self.assertRaisesRegex(ValueError, "has 2 parts, and ax 1"):
             self.run.plot(y=["theta", "velocity"], ax=ax)
-        dinal.plot([[0, 1], [1, 2]], ([0, 1], [2, 3], dict(style="fill")), ax=ax)
-        self.assertEqual(len(ax.told["fill_between"]), 1)
+        dinal.plot([[0, 1], [1, 2]], ([0, 1], [2, 3], dict(style="fill")), ([0, 1], [2, 3], dict(style="fill", base=[1, 2])), ax=ax)
+        self.assertEqual([np.ravel(filled[0][2]).tolist() for filled in ax.told["fill_between"]], [[0], [1, 2]])
 
     def test_matplotlib(self):
         if not importlib.util.find_spec("matplotlib"):
