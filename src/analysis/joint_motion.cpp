@@ -98,8 +98,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     }
     // The angle of a rotating body is not periodic.
     const double turned = facts.is_found() ? of([](const BodyMotion& body) { return body.turned; }) : 0;
-    if (!question.is_plain() && facts.is_found() &&
-        std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
+    if (facts.is_found() && std::fabs(turned) > 1e-6 * std::fabs(whole.bodies[seen.first()].turned)) {
         facts.amplitude = facts.low = facts.high = facts.start.theta = std::numeric_limits<double>::quiet_NaN();
     }
     return facts;

@@ -77,7 +77,7 @@ private:
 };
 
 /// Measures bodies from each other if they rotate together and nothing depends on their position. A plain body under M
-/// alone is measured from the ground: there a drift is growth.
+/// alone is measured from the ground, where a drift is growth, unless the question says that its angle advances.
 Chart chart_of(Runs& runs);
 
 /// The map from one return to the next: from period to period, or from passage to passage of a section. A place has the

@@ -45,26 +45,46 @@ const model::Excitation& SteadyQuestion::load() const {
 
 namespace {
 
+SteadyQuestion advancing(SteadyQuestion question) {
+    question.advances = true;
+    return question;
+}
+
+/// Returns whether nothing restores the angle of a plain body, on which M alone acts.
+bool is_free_block(const SteadyQuestion& question) {
+    return question.is_plain() && !question.is_timeless() && !question.drive.has_more() &&
+           !(question.body.stiffness() > 0) && question.body.spring().none() && !question.body.walls();
+}
+
 SteadyMotion motion_of(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
-    return PeriodMap::applies_to(question) ? motion_by_periods(question, near, monitor)
-                                           : motion_by_returns(question, monitor);
+    if (question.advances || !PeriodMap::applies_to(question)) return motion_by_returns(question, monitor);
+    return motion_by_periods(question, near, monitor);
+}
+
+/// The motion of a free block may repeat its velocity while the angle advances, which is not growth.
+SteadyMotion motion_or_advance(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
+    SteadyMotion motion = motion_of(question, near, monitor);
+    if (motion.status != SteadyStatus::grows || !is_free_block(question)) return motion;
+    SteadyMotion advance = motion_of(advancing(question), near, monitor);
+    return advance.is_found() ? advance : motion;
 }
 
 }  // namespace
 
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return motion_of(question, false, monitor);
+    return motion_or_advance(question, false, monitor);
 }
 
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor) {
-    return motion_of(question, true, monitor);
+    return motion_or_advance(question, true, monitor);
 }
 
 namespace {
 
-/// Returns whether the motions are equal or mirror images.
-bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size) {
+/// Returns whether the motions are equal or mirror images. `free`: nothing restores the angle, so all rests are one.
+bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size, bool free) {
     if (a.stands() && b.stands()) {
+        if (free) return true;
         const double within = 1e-6 * size;
         return b.start.theta >= a.rest.first - within && b.start.theta <= a.rest.second + within;
     }
@@ -110,7 +130,10 @@ std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const Ste
     // At rest only the initial state indicates the size of other motions.
     if (known.stands())
         size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
-    const auto alike = [size](const SteadyMotion& a, const SteadyMotion& b) { return are_alike(a, b, size); };
+    const bool free = !(question.body.stiffness() > 0) && question.body.spring().none();
+    const auto alike = [size, free](const SteadyMotion& a, const SteadyMotion& b) {
+        return are_alike(a, b, size, free);
+    };
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
@@ -169,7 +192,9 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
 
 std::vector<OtherMotion> other_motions(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
-    return question.is_plain() ? others_of_one(question, known, monitor) : others_of_all(question, known, monitor);
+    if (!question.is_plain()) return others_of_all(question, known, monitor);
+    return std::isnan(known.amplitude) ? others_of_all(advancing(question), known, monitor)
+                                       : others_of_one(question, known, monitor);
 }
 
 }  // namespace dinal::analysis

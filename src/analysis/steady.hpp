@@ -38,6 +38,8 @@ struct SteadyQuestion {
     /// controllers.
     double settles = -1;
     double longest = model::never;  ///< longest stretch of its runs, time units
+    /// whether the angle of a plain body under M may advance from period to period, as that of named bodies may
+    bool advances = false;
 
     /// A question about one plain body, or about all or one of several. Fails if a body's motion is prescribed.
     static text::Expected<SteadyQuestion> of(model::SystemHandle system, model::Drive drive,

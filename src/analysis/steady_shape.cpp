@@ -147,7 +147,8 @@ public:
         switch (motion_.status) {
             case SteadyStatus::steady:
                 if (motion_.period == 0) {
-                    say("All bodies rotate at constant speed.");
+                    several() ? say("All bodies rotate at constant speed.")
+                              : say("It moves at the constant velocity {:.6g}.", motion_.start.velocity);
                     break;
                 }
                 tell_period();
@@ -217,8 +218,12 @@ private:
         }
     }
     void tell_extremes(const SteadyShape& shape) {
-        say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
-            number(motion_.high));
+        if (const auto& run = motion_.by_returns.run; std::isnan(motion_.amplitude) && run) {
+            say("It advances by {:.6g} in each period.", run->state_at_stop.theta - run->initial.theta);
+        } else {
+            say("Its amplitude is {}, from theta = {} to {}.", number(motion_.amplitude), number(motion_.low),
+                number(motion_.high));
+        }
         if (shape.lag) {
             say("Its fundamental lags {:.5g} rad behind that of M.", *shape.lag);
         }

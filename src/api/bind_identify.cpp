@@ -174,7 +174,8 @@ std::span<const double> record_numbers(lua_State* L, const lua::Options& options
                                   text::counted(record.columns.size(), "column"))});
     }
     if (found->numbers() == nullptr) {
-        options.fail({fmt::format("the column '{}' of the record has no numbers", found->name)});
+        options.fail({fmt::format("the column '{}' of the record holds words, such as {}", found->name,
+                                  first_word(found->words()))});
     }
     return found->numbers()->values();
 }

@@ -79,12 +79,16 @@ void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadC
     if (!asked.sort && asked.duplicates == Duplicates::keep) return;
     auto& columns = content.columns;
     auto times = std::find_if(columns.begin(), columns.end(), [](const files::ReadColumn& column) {
-        return (column.name == "t" || column.name == "time") && !column.of_words;
+        return column.name == "t" || column.name == "time";
     });
+    const char* option = asked.sort ? "sort" : "duplicates";
+    if (times != columns.end() && times->of_words) {
+        options.fail(option, fmt::format("{} needs times, and the column '{}' holds words, such as {}", option,
+                                         times->name, first_word(times->words)));
+    }
     if (times == columns.end()) {
         times = std::find_if(columns.begin(), columns.end(), [](const auto& column) { return !column.of_words; });
     }
-    const char* option = asked.sort ? "sort" : "duplicates";
     if (times == columns.end()) options.fail(option, fmt::format("{} needs a column of numbers", option));
     const std::vector<double> t = times->numbers;
     const auto gap = std::find_if(t.begin(), t.end(), [](double x) { return std::isnan(x); });

@@ -247,10 +247,14 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
 }
 
 /// The labels of the curves from the option `labels`, in the order of their columns.
-std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options) {
+std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options, std::size_t curves) {
     options.push("labels");
     const auto labels = lua_type(L, -1) == LUA_TSTRING ? std::nullopt : lua::strings_at(L, -1);
     if (!labels) options.wrong("labels");
+    if (curves > 0 && labels->size() > curves) {
+        options.fail("labels",
+                     fmt::format("labels has {} names for {}", labels->size(), text::counted(curves, "column")));
+    }
     lua_pop(L, 1);
     return *labels;
 }
@@ -444,7 +448,8 @@ int plot_run(lua_State* L) {
     // One label means one axis.
     const plots::Axes axes = options.has("ylabel") ? plots::Axes::one : plots::Axes::one_a_unit;
     std::vector<plots::Figure> figures = options.value_or_fail(plots::column_figures(
-        data, {.x = x.empty() ? "" : x.front(), .ys = ys, .labels = asked_labels(L, options), .axes = axes}));
+        data,
+        {.x = x.empty() ? "" : x.front(), .ys = ys, .labels = asked_labels(L, options, ys.size()), .axes = axes}));
     apply_options(L, options, figures);
     return deliver(L, options, std::move(figures));
 }
@@ -575,6 +580,17 @@ text::Expected<std::string> content(const std::vector<plots::Figure>& figures, F
 void write_picture(lua_State* L, const lua::Options& options, const TargetOptions& asked,
                    const std::vector<plots::Figure>& figures, const plots::TextFormat& format) {
     const FileKind kind = kind_of(options, *asked.file);
+    const bool is_text = kind == FileKind::txt;
+    for (const char* option : {"width", "height", "ascii"}) {
+        if (is_text || !options.has(option)) continue;
+        options.fail(
+            option,
+            fmt::format(
+                "{} is for text, in the terminal or a .txt file; a file of this kind takes size = {{ 15, 10 }} (cm)",
+                option));
+    }
+    if (is_text && asked.size)
+        options.fail("size", "size is for .svg, .png and .pdf; give width and height for a .txt file");
     const plots::PaperSize size = asked_size(options, asked);
     // created before the work, so that errors come early
     files::OutputFile file = options.value_or_fail(files::OutputFile::create(*asked.file));

@@ -276,6 +276,10 @@ int spectrum_of_run(lua_State* L) {
     const lua::Options options(L, positional ? 3 : 2, spectrum_call);
     SpectrumOptions asked;
     options.fill(asked);
+    if (positional && options.has("of")) options.fail("of", "the column is named twice, before the options and by of");
+    if (asked.method != SpectrumMethod::welch && options.has("segments")) {
+        options.fail("segments", "segments are of method = \"welch\"");
+    }
     const std::string name = positional ? std::string(lua_tostring(L, 2)) : asked.of;
     std::string_view own_name = name;
     if (const auto joint = joint_of_column(*run, name)) {

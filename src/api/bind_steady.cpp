@@ -486,11 +486,15 @@ std::optional<double> asked_period(const lua::Options& options) {
 
 namespace {
 
-/// Makes repeating functions in M of a plain system native terms, or declares their periods.
+/// Makes repeating functions in M of a plain system native terms, and declares the periods of all others that are read.
 void find_period(lua_State* L, analysis::SteadyQuestion& question) {
-    if (!question.is_plain()) return;
-    const auto terms = terms_alone(L, *question.system, question.drive, 0, model::never);
-    question.drive.loads = {terms ? *terms : with_periods(L, question.drive.M())};
+    model::Drive& drive = question.drive;
+    const auto terms = question.is_plain() ? terms_alone(L, *question.system, drive, 0, model::never) : std::nullopt;
+    if (terms) drive.loads = {*terms};
+    for (auto* acting : {&drive.loads, &drive.belts}) {
+        for (model::Excitation& one : *acting) one = with_periods(L, one);
+    }
+    drive.base = with_periods(L, drive.base);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "files/text_input.hpp"
 #include "lua/memory_limit.hpp"
 #include "motion/columns.hpp"
 #include "text/characters.hpp"
@@ -92,6 +93,12 @@ std::string heading_of(std::span<const model::Event> events) {
 }
 
 }  // namespace
+
+std::string first_word(const std::vector<std::string>& words) {
+    const auto found =
+        std::find_if(words.begin(), words.end(), [](const auto& word) { return !files::parse_field(word, false); });
+    return files::shown(found == words.end() ? std::string_view() : std::string_view(*found));
+}
 
 std::size_t DataColumn::size() const {
     const lua::Vector* vector = numbers();

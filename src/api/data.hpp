@@ -43,6 +43,9 @@ struct DataColumn {
     [[nodiscard]] std::string label() const { return model::of_unit(name, unit); }
 };
 
+/// The first of these words that is no number, in quotes: it made a column of a file one of words.
+std::string first_word(const std::vector<std::string>& words);
+
 struct Data;
 
 /// Additional data, made on demand: d.jumps, d:plot{ overlay = "linearised" }.

@@ -83,6 +83,7 @@ std::vector<std::string> body_names(const model::System& system) {
 std::size_t joint_named(lua_State* L, std::string_view name, const model::System& system, const char* what,
                         const lua::Class& of) {
     if (const auto known = system.joint_named(name)) return *known;
+    if (!system.named) lua::raise(L, fmt::format("{} has no '{}': it has one body without a name", what, name));
     std::vector<std::string> own;
     for (const model::Joint& joint : system.joints) own.push_back(joint.name);
     raise_unknown_name(L, fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),

@@ -238,7 +238,7 @@ public:
                                    std::string(at_call.example));
         }
         if (function_) place_ = push_function(L, options, "at");
-        if (!function_) check_harmonic();
+        function_ ? refuse_harmonic() : check_harmonic();
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 
@@ -397,6 +397,13 @@ private:
         }
     }
 
+    /// M is what `at` returns, so options of a harmonic M would have no effect.
+    void refuse_harmonic() const {
+        for (const char* option : {"amplitude", "frequency", "omega", "period"}) {
+            if (options_.has(option)) options_.fail(option, fmt::format("{} and at exclude each other", option));
+        }
+    }
+
     /// Checks that a harmonic M has exactly one frequency, varied or given, and an amplitude.
     void check_harmonic() const {
         const int given = (asked_.frequency ? 1 : 0) + (asked_.omega ? 1 : 0) + (asked_.period ? 1 : 0);
@@ -407,9 +414,11 @@ private:
             if (!times && name != "amplitude") {
                 options_.fail("at", fmt::format("over.{} needs at, a function such as {}", name, at_call.example));
             }
+            if (times ? given > 0 : options_.has("amplitude")) {
+                options_.fail("over", fmt::format("{} is varied, and cannot be given as well", name));
+            }
             if (!times) continue;
             ++in_time;
-            if (given > 0) options_.fail("over", fmt::format("{} is varied, and cannot be given as well", name));
             for (const double x : parameter.numbers()->values()) {
                 if (x > 0) continue;
                 options_.fail(name, fmt::format("{} = {} must be positive", name, x));

@@ -122,7 +122,11 @@ public:
     text::Expected<ReadColumns> read() {
         if (auto fault = collect_rows()) return *fault;
         const bool says_separator = take_separator_line();
-        if (rows_.empty()) return text::Error{file_ + ": the file is empty, it has neither names nor numbers"};
+        if (rows_.empty()) {
+            const char* what = options_.skip > 0 ? ": nothing follows the lines that are skipped"
+                                                 : ": the file is empty, it has neither names nor numbers";
+            return text::Error{file_ + what};
+        }
         if (!says_separator) {
             const auto separator = separator_in(rows_[rows_.size() > 1 ? 1 : 0].text);
             separator_ = separator ? *separator : separator_in(rows_.front().text).value_or(Separator::blanks);

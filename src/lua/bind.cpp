@@ -252,6 +252,17 @@ std::string describe(lua_State* L, int index) {
             const std::string_view text = lua_tostring(L, index);
             return "the string \"" + std::string(text.substr(0, 40)) + (text.size() > 40 ? "..." : "") + "\"";
         }
+        case LUA_TTABLE: {
+            if (lua_getmetatable(L, index) != 0) {
+                lua_pop(L, 1);
+                break;
+            }
+            const int table = lua_absindex(L, index);
+            lua_pushnil(L);
+            if (lua_next(L, table) == 0) return "an empty table";
+            lua_pop(L, 2);
+            break;
+        }
         case LUA_TUSERDATA:
             if (const Documented found = documented(L, index); found.owner != nullptr) {
                 return with_article(found.owner->name);

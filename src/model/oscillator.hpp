@@ -60,8 +60,8 @@ inline constexpr text::Option mechanical_options[] = {
     {.name = "walls",
      .unit = "rad",
      .meaning =
-         "end stops: { lower, upper, restitution }, either wall or both; restitution 0 ... 1, 1 unless given; elastic "
-         "ones are { lower, upper, stiffness, damping }",
+         "end stops: { lower = -1, upper = 1, restitution = 0.7 }, either wall or both; restitution 0 ... 1, 1 unless "
+         "given; elastic ones have stiffness and damping instead",
      .wanted = "a table such as { lower = -0.8, upper = 0.8, restitution = 0.7 }",
      .fields = {&walls_call}},
 };

@@ -61,6 +61,9 @@ test("mistakes in a response are errors with a reason", function()
         { { over = {} }, "over must be a name and its values" },
         { { over = { frequency = { "a" } } }, "over.frequency must be a list of numbers" },
         { { over = { frequency = {} } }, "frequency has no values" },
+        { { over = one, omega = 1, amplitude = 2 }, "amplitude is varied, and cannot be given as well" },
+        { { over = { x = { 1 } }, at = empty, amplitude = 2 }, "amplitude and at exclude each other" },
+        { { over = one, omega = 1, of = "a" }, "this system has no 'a': it has one body without a name" },
         { { over = { frequency = 3 } }, "over.frequency must be a vector or a table" },
         { { over = { frequency = { 1, -1 } } }, "frequency = -1 must be positive" },
         { { over = { a = { 1 }, b = { 1 }, c = { 1 } } }, "varies one or two", "sweep" },
@@ -155,6 +158,8 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     equal(#prime, 97)
     near(prime:spectrum("M").amplitude[4], 4, 1e-9)
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
+    raises_here(function() run:spectrum("theta", { of = "velocity" }) end, "the column is named twice")
+    raises_here(function() run:spectrum{ segments = 4 } end, 'segments are of method = "welch"')
     raises_here(function() sys:simulate{ t_end = 3, times = { 0, 1, 1.5, 2, 2.2, 2.3, 2.4, 2.5, 2.6, 2.7, 2.8 } }:spectrum("M") end, "evenly spaced")
     raises_here(function() sys:simulate{ t_end = 3, dt = 1 }:spectrum("M") end, "too few")
     raises_here(function() sys:simulate{ t_end = 3 }:spectrum{ from = 3 } end, "from = 3 must be before the end of the run, t = 3")

@@ -152,7 +152,7 @@ test("bodies may come to rest, and impossible questions are refused", function()
     equal(rig:steady { M = { a = sine(1, 0.05) } }.a.status, "adheres")
     local function scripted(t) return math.sin(t) end
     refuses(function(o) rig:steady(o) end, {
-        { { M = { a = scripted } }, "the period of M is not known; give it with period = ..." },
+        { { M = { a = unread(scripted) } }, "the period of M is not known; give it with period = ..." },
         { { M = { a = scripted }, period = 3 }, "does not repeat itself" },
         { { M = { a = excitation.sampled(function() return 0 end, { every = 0.1 }), b = sine(1) } }, "no common period", "run it for long" },
     })
@@ -372,6 +372,35 @@ test("a response in which the first body rests and another moves is steady", fun
     local rig = system { bodies = { a = { I = 1, k = 1, Rd = 0.5 }, b = { I = 1, k = 1, C = 0.1 } } }
     local c = rig:response { over = { x = { 0.1, 1 } }, at = function(p) return { M = { b = sine(0.5, p.x) } } end }
     equal(table.concat(c.status, " "), "steady steady")
+end)
+
+-- Linear drag alone: the mean velocity is the mean torque over C. With dry friction each period of a long run is the judge.
+test("a block without a spring that advances evenly is steady, alone and as the only one of several bodies", function()
+    for i, own in ipairs { { I = 1, k = 0, C = 1 }, { I = 1, k = 0, C = 1, Rd = 1 }, { I = 1, k = 0, friction = friction.stribeck { Rd = 1, Re = 1.2, speed = 0.3 } } } do
+        local M, sys = sine(1, 3) + 0.1, system(own)
+        local advance = i == 1 and 0.1 * 2 * math.pi or sys:simulate { M = M, t_end = 200, dt = 200 }:cycle().drift
+        local alone, named = sys:steady { M = M }, system { bodies = { a = own } }:steady { M = { a = M } }
+        for _, s in ipairs { alone, named } do
+            equal(s.status, "steady")
+            has(s:explain():gsub("%s+", " "), ("It advances by %.6g in each period."):format(advance))
+            equal(#s.others, 0)
+        end
+        near(alone.run.theta[#alone.run] - alone.run.theta[1], advance, 1e-9)
+        equal(alone.amplitude, nil)
+        equal(alone:explain(), named:explain())
+    end
+    equal(system { I = 1, k = 0, Rd = 1 }:steady { M = sine(1, 3) + 2 }.status, "grows")
+    has(system { I = 1, k = 0, C = 1, Rd = 1 }:steady { M = 3 }:explain(), "It moves at the constant velocity 2.", "no other motion")
+    equal(#system { I = 1, k = 0, C = 1, Rd = 1 }:steady { M = 0.3 }.others, 0)
+end)
+
+test("the period of functions that are read is found for named bodies, belts and a base as well", function()
+    local function M(t) return 2 * math.sin(1.3 * t) end
+    local function belt(t) return 0.2 * math.cos(2.6 * t) end
+    local rig, sys = chain(0.3), system { I = 1, k = 4, Rd = 0.3 }
+    near(rig:steady { M = { a = M }, belt = { a = belt } }.period, 2 * math.pi / 1.3, 1e-12)
+    near(sys:steady { belt = belt }.period, math.pi / 1.3, 1e-12)
+    near(sys:steady { M = M, base = belt }.period, 2 * math.pi / 1.3, 1e-12)
 end)
 
 finish()

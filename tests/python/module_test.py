@@ -746,6 +746,8 @@ class Help(unittest.TestCase):
         text = dinal.system.__doc__
         self.assertIn("system(I, k, C = 0", text)
         self.assertIn("moment of inertia", text)
+        self.assertIn("end stops: dict(lower=-1, upper=1, restitution=0.7)", text)
+        self.assertIn("several bodies by name: dict(load=dict(I=0.3, Rd=0.4)),", text)
         simulate = dinal.system(I=1, k=4).simulate
         self.assertIn("osc.simulate(", simulate.__doc__)
         self.assertIn("Example:", simulate.__doc__)
