@@ -14,7 +14,7 @@ namespace {
 // In units of the pace. Torques hardly change in the first time; crossings closer than the second are lost in the
 // rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
-constexpr double of_rounding = 64 * rounding;
+constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 
 }  // namespace
 
@@ -38,7 +38,8 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     const auto passages = next_passages(joint, still, speed, far);
     if (!passages || !put_on_surface(back, joint, still, far, speed, passages->all)) return Settles::no;
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
-    const bool seen = passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > of_rounding * size;
+    const bool seen =
+        passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > clearly_seen * of_rounding * size;
     if (seen && passages->all > last_passages * pace) return Settles::soon;
     recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
     const Motion way = model::motion_of(speed);
