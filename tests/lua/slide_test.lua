@@ -515,4 +515,15 @@ test("a body sticks where its surface passes velocity 0 and the load is too weak
     near(run.theta[#run], 0.5, 1e-12)
 end)
 
+test("rk4, which samples such loads, comes to rest as well", function()
+    for _, M in ipairs { passes(1, 0.2), function(_, _, v) return v > 0 and -1 or 1 end } do
+        local task = { M = M, theta0 = 1, t_end = 20 }
+        local truth = system { I = 1, k = 0.5, Rd = 0.3 }:simulate(task)
+        task.integrator = integrator.rk4 { h = 0.002 }
+        local run = system { I = 1, k = 0.5, Rd = 0.3 }:simulate(task)
+        equal(run.status, truth.status)
+        near(run.theta[#run], truth.theta[#truth], 1e-9)
+    end
+end)
+
 finish()
