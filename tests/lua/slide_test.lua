@@ -526,4 +526,21 @@ test("rk4, which samples such loads, comes to rest as well", function()
     end
 end)
 
+test("two loads of one link that slide by turns follow an independent time-stepping program", function()
+    local rig = system {
+        bodies = { a = { I = 1.26 }, b = { I = 0.538, C = 0.246 } }, links = { c = { "a", "b", Rd = 0.373 } },
+    }
+    local function c(t, theta, v)
+        local slip = v.a - v.b
+        local x = slip - 0.177 * math.sin(0.743 * t + 5.96)
+        return (slip + 0.857 * (theta.a - theta.b) + 0.21425 > 0 and -2.44 or 2.44) + (x > 0 and -2.62 or x < 0 and 2.62 or 0)
+    end
+    local run = rig:simulate {
+        M = { a = excitation.harmonic { amplitude = 0.72, omega = 2.11, phase = 2.39 }, c = c },
+        theta0 = { a = -1.05, b = -0.294 }, t_end = 8,
+    }
+    near(run.a.theta[#run], -1.449599902, 3e-9)
+    near(run.b.theta[#run], -1.133706203, 3e-9)
+end)
+
 finish()
