@@ -268,6 +268,10 @@ std::string describe(lua_State* L, int index) {
                 return with_article(found.owner->name);
             }
             break;
+        case LUA_TTABLE:
+            if (lua_rawlen(L, index) > 0)
+                return "a list";  // where a table by name is wanted, it is the names that lack
+            break;
         default:
             break;
     }

@@ -452,4 +452,95 @@ test("a load slides beside the friction of a belt, which may move and turn the s
     near(run.theta, dry.theta, 1e-10)
 end)
 
+-- A load -D sgn(theta - a) without dry friction that could hold the body: it passes a ever faster, and stays there.
+test("a load holds a body at the place to which it drives it back, beside damping alone or on a belt", function()
+    local run = system { I = 1, k = 0.5, C = 2 }:simulate { M = passes(1, 0.2), theta0 = 1, t_end = 30 }
+    equal(run.status, "end")
+    near(run.theta[#run], 0.2, 1e-12)
+    near(run.M[#run], 0.1, 1e-9)
+    assert(#run.events < 30000, #run.events)
+    closes(run)
+    -- friction of the belt pushes it forward, the load holds it against that until the pull of the last term is too strong
+    local g = passes(2, -0.7)
+    run = system { I = 1, k = 1, Rd = 0.9 }:simulate {
+        M = function(t, theta) return g(t, theta) + 0.2 * t end, belt = 0.1, theta0 = -0.7, t_end = 9,
+    }
+    local left = switches(run)
+    near(left[#left].t, (2 - 0.9 - 0.7) / 0.2, 1e-9)
+    for i, t in ipairs(run.t) do
+        if t < left[#left].t then near(run.theta[i], -0.7, 1e-12) end
+    end
+end)
+
+test("the place may move, and may be one of a link", function()
+    local run = system { I = 1, k = 1, C = 0.4 }:simulate {
+        M = function(t, theta) return theta > 0.3 * math.sin(t) and -2 or 2 end, velocity0 = 0.3, t_end = 12,
+    }
+    for i, t in ipairs(run.t) do near(run.theta[i], 0.3 * math.sin(t), 1e-9) end
+    local rig = system { bodies = { a = { I = 1, k = 1, C = 0.2 }, b = { I = 2 } }, links = { c = { "a", "b", k = 0.5 } } }
+    run = rig:simulate { M = { c = function(_, theta) return theta.a - theta.b > 0.4 and -3 or 3 end }, theta0 = { a = 0.4 }, t_end = 10 }
+    local one = system { I = 3, k = 1, C = 0.2 }:simulate { theta0 = 0.4, t_end = 10 }
+    near(run.a.theta, one.theta, 1e-10)
+    near(run.b.theta, one.theta - 0.4, 1e-10)
+end)
+
+test("growing passages are followed", function()
+    local run = system { I = 1, k = 0 }:simulate {
+        M = function(_, theta, v) return (theta > 0 and -1 or 1) + 3 * v end, velocity0 = 1e-3, t_end = 6,
+    }
+    assert(math.max(run.theta:max(), -run.theta:min()) > 1e-3, run.theta:max())
+end)
+
+test("where two surfaces meet the motion goes on along the one that holds it", function()
+    local function go(D1, D2, slope)
+        return system { I = 1, k = 0 }:simulate {
+            M = function(t, _, v)
+                local one, other = v - 0.5 * t, v - slope * t - 0.5 + slope
+                return (one > 0 and -D1 or D1) + (other > 0 and -D2 or D2)
+            end, t_end = 3,
+        }
+    end
+    for _, case in ipairs { { 1.2, 1.5, 0.2, 0.2 }, { 2.2, 1, 0.2, 0.5 }, { 1.5, 1.5, -0.5, 0 } } do
+        local run = go(table.unpack(case))
+        equal(run.status, "end")
+        for i, t in ipairs(run.t) do near(run.velocity[i], t < 1 and 0.5 * t or 0.5 + case[4] * (t - 1), 1e-11) end
+    end
+end)
+
+test("a body sticks where its surface passes velocity 0 and the load is too weak to take it along", function()
+    local run = system { I = 1, k = 0, Rd = 0.7 }:simulate {
+        M = function(t, _, v) return (v - 1 + t > 0 and -0.9 or 0.9) + 0.4 end, velocity0 = 1, t_end = 3,
+    }
+    equal(run.status, "stuck")
+    near(run.theta[#run], 0.5, 1e-12)
+end)
+
+test("rk4, which samples such loads, comes to rest as well", function()
+    for _, M in ipairs { passes(1, 0.2), function(_, _, v) return v > 0 and -1 or 1 end } do
+        local task = { M = M, theta0 = 1, t_end = 20 }
+        local truth = system { I = 1, k = 0.5, Rd = 0.3 }:simulate(task)
+        task.integrator = integrator.rk4 { h = 0.002 }
+        local run = system { I = 1, k = 0.5, Rd = 0.3 }:simulate(task)
+        equal(run.status, truth.status)
+        near(run.theta[#run], truth.theta[#truth], 1e-9)
+    end
+end)
+
+test("two loads of one link that slide by turns follow an independent time-stepping program", function()
+    local rig = system {
+        bodies = { a = { I = 1.26 }, b = { I = 0.538, C = 0.246 } }, links = { c = { "a", "b", Rd = 0.373 } },
+    }
+    local function c(t, theta, v)
+        local slip = v.a - v.b
+        local x = slip - 0.177 * math.sin(0.743 * t + 5.96)
+        return (slip + 0.857 * (theta.a - theta.b) + 0.21425 > 0 and -2.44 or 2.44) + (x > 0 and -2.62 or x < 0 and 2.62 or 0)
+    end
+    local run = rig:simulate {
+        M = { a = excitation.harmonic { amplitude = 0.72, omega = 2.11, phase = 2.39 }, c = c },
+        theta0 = { a = -1.05, b = -0.294 }, t_end = 8,
+    }
+    near(run.a.theta[#run], -1.449599902, 3e-9)
+    near(run.b.theta[#run], -1.133706203, 3e-9)
+end)
+
 finish()

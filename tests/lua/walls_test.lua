@@ -183,4 +183,11 @@ test("rk4 makes the same steps with walls out of reach as without walls, and has
     end
 end)
 
+test("a body that comes to rest at a wall does not stop the others meanwhile", function()
+    local bodies = { a = { I = 1, walls = { lower = 0, restitution = 0.5 } }, b = { I = 1, k = 4 } }
+    local run = system { bodies = bodies }:simulate { M = { a = -1 }, theta0 = { a = 1, b = 1 }, t_end = 20 }
+    equal(run.a.theta[#run], 0)
+    near(run.b.theta[#run], math.cos(2 * 20), 1e-11)
+end)
+
 finish()

@@ -125,10 +125,7 @@ void Conditions::let_go(double t) {
 
 void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
     if (!any_) return;
-    if (slides_.any()) {
-        if (forgotten_) cease();
-        slides_.follow(mode);
-    }
+    if (slides_.any()) slides_.follow(mode);
     // The state is taken slightly later if a velocity leaves 0, because a condition may lose small digits, such as
     // those of floor(10 + velocity).
     constexpr double little_later = 1e-9;
@@ -165,9 +162,33 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
         const bool just_crossed = last_.function == &function && last_.t == at.t && (last_.of & of_leaving) != 0;
-        function.decide({t, at.side, y}, just_crossed ? again : again | of_leaving);
+        if (!forgotten_ && slides_.just_left(function, at.t)) return;
+        const std::uint64_t asked = just_crossed ? again : again | of_leaving;
+        function.decide({t, at.side, y}, asked);
+        if (asked != 0 && !forgotten_) decide_by_rate(function, at, asked);
     });
     forgotten_ = false;
+}
+
+/// Decides conditions anew that depend on a velocity that a contact holds or just lets go, if they pass zero right now
+/// for the held velocity: by their values a little later.
+void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again) {
+    constexpr double little_later = 1e-9, next_to_none = 1e-3;
+    if (function.is_law() || function.slides() || function.conditions().empty()) return;
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> y(at.y.begin(), at.y.end()), margins, then;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (standing_[i] > 1) y[n + i] = std::copysign(std::numeric_limits<double>::min(), standing_[i] == 2 ? 1 : -1);
+    }
+    function.margins({at.t, at.side, y}, margins);
+    const double h = little_later * unit_;
+    for (std::size_t i = 0; i < n; ++i) y[i] += h * y[n + i];
+    const Moment later{at.t + h, at.side, y};
+    function.margins(later, then);
+    for (std::size_t c = 0; c < margins.size(); ++c) {
+        const bool passes = std::fabs(margins[c]) < next_to_none * std::fabs(then[c]);
+        if (passes && (function.conditions()[c].of & again) != 0) return function.decide(later, again);
+    }
 }
 
 bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
@@ -243,10 +264,8 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
 /// Returns whether a condition on angles was just crossed and crosses back at once. A jump of torques cannot turn the
 /// motion so fast, so that the crossing may be rounding of a long stretch.
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
-    const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
-    const std::uint64_t places = bodies < 64 ? (std::uint64_t{1} << bodies) - 1 : ~std::uint64_t{0};
     const auto [step, beyond, of] = function.conditions()[condition];
-    return last_.function == &function && last_.t == now && last_.step == step && (of & ~places) == 0;
+    return last_.function == &function && last_.t == now && last_.step == step && is_of_angles(of);
 }
 
 Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& chatter) {
@@ -263,7 +282,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
             continue;
         }
         const auto [step, beyond, of] = function->conditions()[condition];
-        const bool soon_again = last_.function == function && here.t - last_.t <= soon * unit_;
+        const bool several = ending.conditions.size() > 1;
+        const bool soon_again = (several || last_.function == function) && here.t - last_.t <= soon * unit_;
         const bool back = soon_again && last_.step == step && last_.from == beyond;
         const double earlier = last_.t < here.t ? last_.t : last_.earlier, since = here.t - earlier;
         chatter.crossed(back);
@@ -276,18 +296,19 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         crossed.jumps = crossed.jumps || clear;
         if (clear && !function->is_law()) ++crossed.count;
         all_small = all_small && clear && jump < small * greatest_;
+        if (!clear || (several && !soon_again)) continue;
         const bool driven_back = soon_again || slides_.stands(*function, now);
-        if (!driven_back || !clear || ending.conditions.size() > 1) continue;
-        if (const auto begun = slides_.begin(*function, jump, now)) {
+        const auto begun = driven_back ? slides_.begin(*function, {.jump = jump}, now) : std::nullopt;
+        if (begun) {
             crossed.slides.push_back({begun->joint, true}), crossed.work = begun->work, chatter.crossed(false);
         } else if (since <= rather_soon * unit_) {
-            crossed.back = {function, condition, since};
+            crossed.back = {function, condition, since, jump};
         }
     }
     small_in_a_row_ = all_small ? small_in_a_row_ + 1 : 0;
     crossed.endless = often || chatter.to_and_fro_endlessly();
     const bool noise = crossed.endless ? !crossed.jumps : small_in_a_row_ >= most_small;
-    if (noise) let_go(here.t);
+    if (noise) let_go(here.t), crossed.back.reset();
     return crossed;
 }
 

@@ -31,10 +31,13 @@ public:
         forgotten_ = forgotten_ && !slides_.any();
     }
     /// Discards all decisions, for use after the state has jumped.
-    void forget() { forgotten_ = true; }
+    void forget() { forgotten_ = true, cease(); }
     /// Discards all decisions at a break, unless a condition passes zero there, whose decision would be rounding.
-    void pass_break(double t) {
-        if (t != crossing_at_) forgotten_ = true;
+    /// Slides go on if both sides still drive the motion back.
+    void pass_break(Now& now) {
+        if (now.t.hi == crossing_at_) return;
+        forgotten_ = true;
+        slides_.renew(now, ceased_);
     }
     /// Announces that the stretch is repeated up to this time, at which a condition passes zero.
     void crosses_at(double t) { crossing_at_ = t; }
@@ -58,7 +61,8 @@ public:
         struct Back {
             Piecewise* function;
             std::size_t condition;
-            double since;  ///< time of its previous crossing
+            double since;  ///< time since its previous crossing
+            double jump;   ///< jump of the function
         };
         std::optional<Back> back{};
     };
@@ -67,15 +71,26 @@ public:
     /// rounding reverses. If both sides of a jump drive the motion back, the load slides along the condition, and the
     /// velocities are moved onto it.
     Crossed cross(const Ending& ending, Now& now, Chatter& chatter);
+    /// Starts a slide along a condition on angles that was crossed back and forth, if both sides bend the motion back.
+    std::optional<Slides::Begun> hold(const Crossed::Back& back, Now& now) {
+        const auto& [step, beyond, of] = back.function->conditions()[back.condition];
+        if (back.function->is_law() || !is_of_angles(of)) return {};
+        return slides_.begin(*back.function, {.jump = back.jump, .of_place = true}, now);
+    }
     /// Ends the slides of loads whose joints now stick. Returns the slides that ended since the last call.
     std::vector<SlideChange> ceased(const Now& now) {
-        if (slides_.any()) slides_.follow(now.mode);
-        if (slides_.any() && (forgotten_ || slides_.lost(now.here()))) forget(), cease();
+        if (slides_.any()) slides_.follow(now.mode), slides_.end_lost(now, ceased_);
         return std::exchange(ceased_, {});
     }
 
 private:
     void let_go(double t);
+    void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
+    /// Returns whether a condition with these arguments depends on angles and time only.
+    [[nodiscard]] bool is_of_angles(std::uint64_t arguments) const {
+        const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
+        return bodies < 64 && arguments >> bodies == 0;
+    }
     [[nodiscard]] bool comes_back(const Piecewise& function, std::size_t condition, double now) const;
     void cease() {
         for (const SlideChange& change : slides_.end()) ceased_.push_back(change);

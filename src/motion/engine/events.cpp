@@ -54,9 +54,15 @@ bool Engine::cross(const Ending& ending) {
     if (crossed.work != 0)
         recorder_->add_jump(now_.t.hi, crossed.slides.front().joint.value_or(0), {.input = crossed.work});
     for (const SlideChange& change : crossed.slides) recorder_->tell_slide(now_, change);
-    const Settles settles = crossed.back ? settle(*crossed.back) : Settles::no;
-    if (crossed.endless && crossed.jumps && settles == Settles::no) return fail(Outcome::chattering);
-    return decide(true);
+    bool goes_on = !crossed.endless || !crossed.jumps;
+    if (crossed.back && settle(*crossed.back) != Settles::no) {
+        goes_on = true;
+    } else if (const auto held = crossed.back ? conditions_->hold(*crossed.back, now_) : std::nullopt) {
+        recorder_->add_jump(now_.t.hi, held->joint.value_or(0), {.input = held->work});
+        recorder_->tell_slide(now_, {held->joint, true});
+        goes_on = true;
+    }
+    return goes_on ? decide(true) : fail(Outcome::chattering);
 }
 
 /// Handles a slip that has reached 0, or passed it because the belt jumped.

@@ -376,7 +376,7 @@ bool Engine::arrive(double x, bool whole) {
     if (x > -1) go_to(x);
     now_.t = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
     now_.after_break = whole && segment_.to_break && now_.t.hi < problem_.window.end;
-    if (now_.after_break) conditions_->pass_break(now_.t.hi);
+    if (now_.after_break) conditions_->pass_break(now_);
     mechanics_.forget_jumps(now_.t.hi);
     if (pace_.bad_time <= now_.t.hi) pace_.bad_time = model::never, mechanics_.forget_failure();
     breaks_.pass(now_.t.hi, problem_.window.end);

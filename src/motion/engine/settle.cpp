@@ -14,7 +14,7 @@ namespace {
 // In units of the pace. Torques hardly change in the first time; crossings closer than the second are lost in the
 // rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
-constexpr double of_rounding = 64 * rounding;
+constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 
 }  // namespace
 
@@ -38,15 +38,13 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     const auto passages = next_passages(joint, still, speed, far);
     if (!passages || !put_on_surface(back, joint, still, far, speed, passages->all)) return Settles::no;
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
-    const bool seen = passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > of_rounding * size;
+    const bool seen =
+        passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > clearly_seen * of_rounding * size;
     if (seen && passages->all > last_passages * pace) return Settles::soon;
     recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
     const Motion way = model::motion_of(speed);
     now_.y = still.y, now_.low = still.low;
-    const auto velocities = now_.y.begin() + static_cast<std::ptrdiff_t>(n());
-    // If other bodies move, the time is not advanced, and this body rests slightly too early.
-    if (std::all_of(velocities, velocities + static_cast<std::ptrdiff_t>(n()), [](double v) { return v == 0; }))
-        wait(passages->all);
+    wait(passages->all);
     now_.mode.friction[joint].leaving = false;
     contacts_.of[joint].arrived = way;
     conditions_->forget();
@@ -110,8 +108,11 @@ bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t j
     return std::fabs(moved) <= hardly * std::fabs(slope * speed * later) + of_rounding * std::fabs(slope * far);
 }
 
-/// Advances the time and users' states, but no angles, by a short time, unless a break or the end comes first.
+/// Advances the time and users' states by a short time, unless a break or the end comes first. If other bodies move, it
+/// does nothing, and the present body rests slightly too early.
 void Engine::wait(double rest) {
+    const auto velocities = now_.y.begin() + static_cast<std::ptrdiff_t>(n());
+    if (std::any_of(velocities, velocities + static_cast<std::ptrdiff_t>(n()), [](double v) { return v != 0; })) return;
     if (!(rest > 0) || !(now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end))) return;
     std::vector<double> rates(mechanics_.states());
     mechanics_.rates(now_.here(), rates.data(), &now_.mode);

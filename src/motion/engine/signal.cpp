@@ -4,7 +4,8 @@
 
 namespace dinal::motion::engine {
 
-bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share) {
+bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share,
+                      std::uint64_t arguments) {
     if (law_ || function_->read() == nullptr) return false;
     auto made = std::make_shared<Slide>();
     let_go();
@@ -14,8 +15,8 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<dou
     // Conditions after the first that differs may depend on it.
     const auto& conditions = piece_.conditions;
     while (made->condition < conditions.size()) {
-        const std::size_t step = conditions[made->condition].step;
-        if (made->beyond.decisions[step] != piece_.decisions[step]) break;
+        const auto& [step, further, of] = conditions[made->condition];
+        if (made->beyond.decisions[step] != piece_.decisions[step] && (of & ~arguments) == 0) break;
         ++made->condition;
     }
     if (made->condition == conditions.size() || made->beyond.conditions.empty()) return false;
@@ -68,15 +69,34 @@ void Piecewise::sliding_margins(const Moment& at, std::vector<double>& out) cons
     for (const auto& [side, c] : slide_->others) out.push_back((side == Slide::Side::own ? own : beyond)[c]);
 }
 
+double Piecewise::margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const {
+    const std::size_t count = of.state_count();
+    return of.margin_rate(piece_, slide_->condition, time(at), asking_->state(at.y), asking_->states(at.y).first(count),
+                          asking_->state(rates), asking_->states(rates).first(count));
+}
+
 std::pair<double, double> Piecewise::margin(const Moment& at, std::span<const double> rates) const {
     std::vector<double> margins;
     (void)on(piece_, at, &margins);
     model::Formula* formula = function_->read();
     if (formula == nullptr) return {0, std::numeric_limits<double>::quiet_NaN()};
-    const std::size_t count = formula->state_count();
-    return {margins[slide_->condition], formula->margin_rate(piece_, slide_->condition, time(at), asking_->state(at.y),
-                                                             asking_->states(at.y).first(count), asking_->state(rates),
-                                                             asking_->states(rates).first(count))};
+    return {margins[slide_->condition], margin_rate(*formula, at, rates)};
+}
+
+double Piecewise::margin_bend(const Moment& at, std::span<const double> rates, std::size_t angles,
+                              double stretch) const {
+    model::Formula* formula = function_->read();
+    if (formula == nullptr) return std::numeric_limits<double>::quiet_NaN();
+    std::vector<double> y(at.y.begin(), at.y.end()), still(y.size(), 0), moves(y.size(), 0), bends(y.size(), 0);
+    for (std::size_t i = 0; i < angles; ++i) moves[i] = rates[i], bends[i] = rates[angles + i];
+    const double of_accelerations = margin_rate(*formula, at, bends) - margin_rate(*formula, at, still);
+    // The rest is the change of the rate along an even motion; a difference of fourth order loses few digits.
+    const auto later = [&](double by) {
+        for (std::size_t i = 0; i < angles; ++i) y[i] = at.y[i] + by * rates[i];
+        return margin_rate(*formula, {at.t + by, Side::at, y}, moves);
+    };
+    const double near = later(stretch) - later(-stretch), far = later(2 * stretch) - later(-2 * stretch);
+    return of_accelerations + (8 * near - far) / (12 * stretch);
 }
 
 bool Piecewise::keeps(std::size_t condition, const Ranges& ranges, bool named) const {

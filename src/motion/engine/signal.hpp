@@ -150,9 +150,10 @@ public:
     /// The piece beyond the condition that it slides along, or nullptr.
     [[nodiscard]] const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
 
-    /// Starts to slide along the condition that differs between two moments on either side of it. Returns false if none
-    /// differs.
-    bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share);
+    /// Starts to slide along the first condition that differs between two moments on either side of it and depends on
+    /// these arguments only. Returns false if there is none.
+    bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share,
+               std::uint64_t arguments = ~std::uint64_t{0});
     /// Also watches the other conditions. A condition counts as the same surface if its margin is below `near` and
     /// changes from one side to the other.
     void watch_others(const Moment& one_side, const Moment& other_side, double near);
@@ -163,11 +164,16 @@ public:
     void leave(std::size_t condition);
     /// The margin of the condition along which it slides, and the rate of this margin for the given rates of y.
     [[nodiscard]] std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
+    /// The second derivative of this margin, if it depends on time and angles only, of which y has `angles`; `stretch`
+    /// is a short time.
+    [[nodiscard]] double margin_bend(const Moment& at, std::span<const double> rates, std::size_t angles,
+                                     double stretch) const;
 
 private:
     [[nodiscard]] double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
         return function_->value_on(piece, time(at), asking_->state(at.y), asking_->states(at.y), margins);
     }
+    [[nodiscard]] double margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const;
     [[nodiscard]] double sliding(const Moment& at) const;
     void sliding_margins(const Moment& at, std::vector<double>& out) const;
     [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }

@@ -1,5 +1,6 @@
 // Slides of the motion along a surface on which a load, or the rate of a state, jumps and both sides drive the motion
-// back (Filippov). The load is then the mixture of both sides that keeps the motion on the surface.
+// back (Filippov). The load is then the mixture of both sides that keeps the motion on the surface. If the condition
+// depends on angles and time only, the loads bend the motion back to it, which passes it ever faster: its place.
 #pragma once
 
 #include <optional>
@@ -29,13 +30,25 @@ public:
         std::optional<std::size_t> joint;  ///< joint of the load; none: a rate
         double work;                       ///< work done by the load when velocities were moved onto the surface
     };
-    /// Starts a slide along a condition that was crossed repeatedly; `jump` is the function's jump, `rates` the rates
-    /// of y along it if known. Empty if the two sides do not drive the motion back.
-    std::optional<Begun> begin(Piecewise& function, double jump, Now& now, const std::vector<double>& rates = {});
+    /// What is known of a condition that was crossed.
+    struct Crossing {
+        double jump = 0;                 ///< jump of the function
+        bool of_place = false;           ///< whether the condition depends on angles and time only
+        std::vector<double> rates = {};  ///< rates of y along the surface, if known
+    };
+    /// Starts a slide along a condition that was crossed repeatedly. Empty if the two sides do not drive the motion
+    /// back, or, at a place, if the passages do not become shorter or the contact there sticks.
+    std::optional<Begun> begin(Piecewise& function, const Crossing& crossing, Now& now);
     /// Sets the mode of contacts to evaluate with.
     void follow(const Mode& mode) { mode_ = mode; }
-    /// Returns whether sticking contacts now hold the velocities of a surface, so that the load does not move them.
-    [[nodiscard]] bool lost(const Moment& here) const;
+    /// Ends slides if sticking contacts now hold the velocities of the surface, so that the load does not move them.
+    void end_lost(const Now& now, std::vector<SlideChange>& changes);
+    /// Returns whether contacts have ended a slide of this function at this time, so that its side is known.
+    [[nodiscard]] bool just_left(const Piecewise& function, double t) const {
+        return left_ == &function && left_at_ == t;
+    }
+    /// Continues slides behind a break, or ends them if they are none there.
+    void renew(Now& now, std::vector<SlideChange>& changes);
     /// Starts a slide of a motion that stands exactly on the surface and is about to leave it.
     void start(Piecewise& function, Now& now);
     /// Handles a changed condition of a slide: ends the slide, or continues it if the condition belongs to one side's
@@ -46,10 +59,10 @@ public:
 
 private:
     struct Side {
-        double margin = 0, rate = 0;
+        double margin = 0, rate = 0;  ///< at a place: of the margin's rate, with a part of the margin
         std::vector<double> rates{};  ///< rates of y
+        double off = 0, speed = 0;    ///< of a place: margin and its rate
     };
-    [[nodiscard]] Side on(Piecewise& function, Piecewise::Slide::Side which, const Moment& at) const;
     /// The two sides; rates are those of the own side's margin, which must fall on the own side and rise beyond the
     /// surface.
     struct Sides {
@@ -60,7 +73,6 @@ private:
         /// Returns the rates of y on the surface.
         [[nodiscard]] std::vector<double> mixed() const;
     };
-    [[nodiscard]] double share(Piecewise& function, const Moment& at) const;
     /// The right-hand acceleration of the belt of a joint.
     [[nodiscard]] double belt_rate(std::size_t joint, const Moment& at) const;
 
@@ -72,15 +84,24 @@ private:
         Piecewise* function;
         std::optional<std::size_t> joint;  ///< joint of the load; none: a rate
         double jump = 0;                   ///< jump of the function at the surface
+        bool of_place = false;
     };
+    [[nodiscard]] bool passes_fade(const Sliding& of, const Now& now, const Sides& sides);
+    [[nodiscard]] Side on(const Sliding& of, Piecewise::Slide::Side which, const Moment& at) const;
+    [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
+    [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
     [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
     /// Makes the function slide along the condition that differs between both sides, with the pieces slightly later on
     /// a motion with these rates, or at present without rates. Empty if no condition differs.
     [[nodiscard]] std::optional<Sides> decide(const Sliding& of, const Now& now, const std::vector<double>& rates);
     /// Returns the sides if both drive the motion back, otherwise empty.
     [[nodiscard]] std::optional<Sides> meet(const Sliding& of, const Now& now, const std::vector<double>& rates);
-    void put_on_surface(const Sides& sides, Now& now, double& work) const;
+    void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
+    [[nodiscard]] std::optional<std::vector<double>> rates_along(const Sliding& of, std::size_t condition,
+                                                                 const Now& now, const Sides& sides) const;
     std::vector<Sliding> sliding_;
+    const Piecewise* left_ = nullptr;
+    double left_at_ = -model::never;
 };
 
 }  // namespace dinal::motion::engine
