@@ -252,26 +252,20 @@ std::string describe(lua_State* L, int index) {
             const std::string_view text = lua_tostring(L, index);
             return "the string \"" + std::string(text.substr(0, 40)) + (text.size() > 40 ? "..." : "") + "\"";
         }
-        case LUA_TTABLE: {
-            if (lua_getmetatable(L, index) != 0) {
-                lua_pop(L, 1);
-                break;
+        case LUA_TUSERDATA:
+            if (const Documented found = documented(L, index); found.owner != nullptr) {
+                return with_article(found.owner->name);
             }
+            break;
+        case LUA_TTABLE: {
+            // Where a table by name is wanted, "a table" would not say what is wrong with these two.
+            if (lua_rawlen(L, index) > 0) return "a list";
             const int table = lua_absindex(L, index);
             lua_pushnil(L);
             if (lua_next(L, table) == 0) return "an empty table";
             lua_pop(L, 2);
             break;
         }
-        case LUA_TUSERDATA:
-            if (const Documented found = documented(L, index); found.owner != nullptr) {
-                return with_article(found.owner->name);
-            }
-            break;
-        case LUA_TTABLE:
-            if (lua_rawlen(L, index) > 0)
-                return "a list";  // where a table by name is wanted, it is the names that lack
-            break;
         default:
             break;
     }
