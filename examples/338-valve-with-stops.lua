@@ -17,5 +17,5 @@ end
 damping of the stops   bounces open   open from    bounces closed   closed from   deepest behind a stop, mm
                    5              3     0.04080                15       0.13794                       0.657
                   40              6     0.04084                 6       0.15063                       0.550
-                 300              3     0.04091                 2       0.15117                       0.237
+                 300              2     0.04091                 2       0.15117                       0.237
 ]]

@@ -257,15 +257,6 @@ std::string describe(lua_State* L, int index) {
                 return with_article(found.owner->name);
             }
             break;
-        case LUA_TTABLE: {
-            // Where a table by name is wanted, "a table" would not say what is wrong with these two.
-            if (lua_rawlen(L, index) > 0) return "a list";
-            const int table = lua_absindex(L, index);
-            lua_pushnil(L);
-            if (lua_next(L, table) == 0) return "an empty table";
-            lua_pop(L, 2);
-            break;
-        }
         default:
             break;
     }

@@ -153,16 +153,19 @@ TEST_CASE("negative damping grows until overflow without false turns", "[spectra
     }
 }
 
-TEST_CASE("feedback that pushes at rest and holds in motion ends a run of rk4 without false events",
+TEST_CASE("feedback that pushes at rest and holds in motion keeps a body at rest by rk4 as by spectral",
           "[rk4][feedback]") {
     for (const double zeta : {0.0, 0.05}) {
         const Excitation M = feedback([](double t, const State& y) {
             return 1.2 * std::sin(t) - 0.3 * std::exp(-std::fabs(y.velocity) / 0.1) * sgn(y.velocity);
         });
         const Run run = must_run(nondimensional(zeta, 0.3), M, {0.3, 0.2}, {0, 20}, Grid::every(0.3), Rk4{0.002});
-        CHECK(run.outcome == Outcome::chattering);
-        REQUIRE(run.events.size() == 1);  // and none for each of the motions that did not get under way
+        const Run other = by_spectral(nondimensional(zeta, 0.3), M, {0.3, 0.2}, {0, 20});
+        CHECK(run.outcome == Outcome::reached_end);
+        REQUIRE(run.events.size() == other.events.size());  // none for each of the motions that did not get under way
         CHECK(run.events[0].kind == EventKind::stick);
+        // rk4 spreads a jump of feedback that is not read over a step
+        CHECK(std::fabs(run.state_at_stop.theta - other.state_at_stop.theta) < 0.03);
     }
 }
 

@@ -165,11 +165,6 @@ test("an M with a delay is the same without the motion between the rows", functi
     equal(last(false), last(true))
 end)
 
-test("a list where a table by name is wanted is called a list", function()
-    local bodies = { a = { I = 1 }, b = { I = 1 } }
-    raises_here(function() system { bodies = bodies, links = { { "a", "b" } } } end, "links must be a table of links by name", "got a list")
-end)
-
 test("mistakes are named with the body or link, and the nearest name", function()
     local bodies = { motor = { I = 1 }, load = { I = 2 } }
     local rig = system { bodies = bodies, links = { gap = { "motor", "load", walls = { lower = -1, upper = 1 } } } }

@@ -158,7 +158,8 @@ end)
 
 test("a function of the time needs a period, and one that does not depend on it needs none", function()
     local sys = system{ I = 1, k = 4, Rd = 0.1 }
-    raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end } end, "the period of M is not known")
+    raises_here(function() sys:steady{ belt = function(t) return math.sin(t^2) end } end, "the period of M is not known")
+    near(sys:steady{ belt = function(t) return math.sin(t) end }.period, 2 * math.pi, 1e-12)
     raises_here(function() sys:steady{ states = { e = { rate = function(t) return math.sin(t) end } } } end,
         "the period of M is not known")
     raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end, period = 3 } end,

@@ -204,7 +204,7 @@ assert(tostring(2 * e.samples(path):delay(3)) ==
 assert(rebuilt(e.samples(path):delay(3))(4) == 2)
 raises(function() return e.samples(path, { value = "mo" }) end, path, "no column 'mo'", "moment")
 raises(function() return e.samples(path, { value = 7 }) end, path, "column 7")
-raises(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got an empty table")
+raises(function() return e.samples(path, { value = {} }) end, "value must be the name or the number of a column, got a table")
 write(path, "0 1\n1 3\n2 5\n")
 assert(e.samples(path)(0.5) == 2, "without names, the first two columns")
 for text, pieces in pairs{

@@ -25,7 +25,7 @@ test("an invalid number is refused with one sentence", function()
   end
   raises_here(function() lab.number("4711") end, 'got the string "4711"; write it without quotes')
   raises_here(function() lab.number(nil) end, "got nil")
-  raises_here(function() lab.number({}) end, "got an empty table")
+  raises_here(function() lab.number({}) end, "got a table")
   equal(lab.number(), nil)
   equal(lab.number(4711), 4711)
   equal(lab.number(4711.0), 4711)
@@ -59,7 +59,7 @@ test("an unknown question, sheet or value is refused with a reason", function()
     { check, "check: the answer is a number, got nil; for example", "1a" },
     { check, 'got the string "3.2"; write it without quotes', "1a", "3.2" },
     { check, 'got the string "three"; for example check("1a", 3.2)', "1a", "three" },
-    { check, "check: the answer is a number, got an empty table", "1a", {} },
+    { check, "check: the answer is a number, got a table", "1a", {} },
     { check, "got nan; is that a root or a logarithm of a negative number, or 0/0", "1a", 0/0 },
     { check, "check: the answer must be a finite number", "1a", math.huge },
     { check, "check: expects a question and one value; after that comes 43", "1a", 1,43 },
