@@ -123,7 +123,8 @@ private:
     /// window that the square of a wide quantity decides, the function is fitted again on that part alone.
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
-        constexpr double few = 64, shortest = 1e-10;
+        constexpr double few = 64;
+        double shortest = 1e-10;  // of a part; it grows, as a series that stays about its error would have no end of parts
         const double error = few * tail(series_);
         if (error <= floor_) return of_series(half, start, {}, series_, values_);
         const auto raised = [&](double sign, double by) {
@@ -144,6 +145,7 @@ private:
             if (const auto x = of_series(half, first, part, fit(values), values)) return x;
             if (const auto x = refined(half, first, last)) return x;
             start = last;
+            shortest *= 4;
         }
         return {};
     }
