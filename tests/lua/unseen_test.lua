@@ -291,4 +291,14 @@ test("an event right before a kink of its function is located although the old f
     end
 end)
 
+test("a relay whose function jumps past both thresholds switches once", function()
+    for _ = 1, 20 do
+        local a, b = lot(.2, .4), lot(.5, .9)
+        local run = system { I = 1, k = 0, C = .1 }:simulate { velocity0 = 1, t_end = 1.5, dt = .5,
+            M = excitation.relay { on = .6, off = .4, amplitude = { .3, 0 }, start = "off",
+                of = function(...) local theta = select(2, ...) return theta > a and theta < b and 1 or 0 end } }
+        equal(#of_kind(run, "switch"), 2)
+    end
+end)
+
 finish()

@@ -67,6 +67,7 @@ private:
         return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
     }
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
+    [[nodiscard]] double soon() const;
     [[nodiscard]] double fastest(std::size_t joint) const;
     [[nodiscard]] bool slides(std::size_t joint) const;
     [[nodiscard]] bool may_creep(std::size_t joint) const;
