@@ -124,7 +124,7 @@ private:
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         constexpr double few = 64;
-        double shortest = 1e-10;  // of a part; it grows, as a series that stays about its error would have no end of parts
+        double shortest = 1e-10;  // of a part; a series that stays about its error would have no end of them
         const double error = few * tail(series_);
         if (error <= floor_) return of_series(half, start, {}, series_, values_);
         const auto raised = [&](double sign, double by) {
