@@ -147,7 +147,7 @@ Eigen::MatrixXd NoiseMemory::remembered(const Eigen::MatrixXd& all) const {
 
 Eigen::MatrixXd remembered_covariance(const NoiseMemory& memory, const Eigen::MatrixXd& slopes,
                                       const Eigen::VectorXd& whole, double noise) {
-    const Eigen::MatrixXd plain = covariance_of(slopes, whole, noise).matrix;
+    Eigen::MatrixXd plain = covariance_of(slopes, whole, noise).matrix;
     if (memory.none()) return plain;
     const Eigen::MatrixXd more = memory.remembered(slopes) / (noise * noise) - slopes;
     return plain + plain * (slopes.transpose() * more) * plain;
@@ -176,8 +176,8 @@ Eigen::VectorXd widened_by_uneven_noise(const NoiseMemory& memory, const Eigen::
                          ratio = (weights.transpose() * squares).array() / sums;
     // The ratio is nearly that of chi squared to its mean; its cube root is nearly Gaussian (Wilson and Hilferty).
     const Eigen::ArrayXd variance = (chance / sums).square() / 9;
-    constexpr double beyond_chance = 2.5;
-    const bool is_uneven = ((ratio.pow(1.0 / 3) - (1 - variance)) > beyond_chance * variance.sqrt()).any();
+    constexpr double unlikely = 2.5;
+    const bool is_uneven = ((ratio.pow(1.0 / 3) - (1 - variance)) > unlikely * variance.sqrt()).any();
     if (!is_uneven) return Eigen::VectorXd::Ones(slopes.cols());
     return ratio.sqrt().matrix();
 }

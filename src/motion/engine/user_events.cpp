@@ -119,8 +119,10 @@ bool UserEvents::passes_on(std::size_t event, const Now& now, const Segment& las
         // This step passes a narrow peak: takes the shortest one that changes the value clearly.
         const double clear = few * (rounded + rounding_of(event, now));
         double step = std::max(soonest * h, few * rounding * std::fabs(now.t.hi));
-        for (change = 0; std::fabs(change) <= clear && step < soon * h; step *= 10) {
+        change = 0;
+        while (std::fabs(change) <= clear && step < soon * h) {
             change = later(step) - later(-step);
+            step *= 10;
         }
     }
     return came_from_[event] * change < -rounded;
