@@ -526,6 +526,17 @@ test("rk4, which samples such loads, comes to rest as well", function()
     end
 end)
 
+test("a body that a belt carries past velocity 0 slips where its load jumps there", function()
+    for _, name in ipairs { "spectral", "rk4" } do
+        local run = system { I = 1, k = 0, Rd = 1 }:simulate {
+            M = function(t, theta, v) return v > 0 and -0.7 or 0.7 end, belt = function(t) return 0.5 * (t - 1) end,
+            velocity0 = -0.5, t_end = 3, dt = 0.5, integrator = integrator[name] { h = name == "rk4" and 0.002 or nil },
+        }
+        near(of_kind(run, "slip")[1].t, 1, 1e-9)
+        near(run.theta[#run], -0.25 + (1 - 0.7) * 2 ^ 2 / 2, 1e-6) -- from there with the excess of friction
+    end
+end)
+
 test("two loads of one link that slide by turns follow an independent time-stepping program", function()
     local rig = system {
         bodies = { a = { I = 1.26 }, b = { I = 0.538, C = 0.246 } }, links = { c = { "a", "b", Rd = 0.373 } },

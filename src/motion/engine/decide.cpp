@@ -243,7 +243,11 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     constexpr double later = 1e-9;  // in time units of the motion
     const double rounded = 64 * rounding * size(j) * by_.unit * joint_at(j).lightness(mechanics_.system().bodies);
     std::vector<double> soon = now().y;
-    for (std::size_t i = 0; i < mechanics_.bodies(); ++i) soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
+    for (std::size_t i = 0; i < mechanics_.bodies(); ++i) {
+        soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
+        // A belt carries the velocity on, also past that at which a load jumps.
+        if (mechanics_.has_belt(j)) soon[mechanics_.bodies() + i] += later * by_.unit * found_.accelerations[i];
+    }
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;
