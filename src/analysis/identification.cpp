@@ -1184,8 +1184,7 @@ private:
         const double variance = found.noise * found.noise;
         if (wrong) covariance.matrix += wrong->added_covariance() / variance;
         if (wrong && wrong->is_sure) {
-            found.misfit = wrong->what;
-            found.other_misfits = wrong->others;
+            found.misfit = wrong->follows;
             found.noise_without_misfit = std::min(wrong->noise, found.scatter);
             found.has_errors = wrong->leaves_errors();
         }

@@ -54,8 +54,8 @@ struct Identified {
     bool is_noise = false;         ///< whether the fit explains no more than it would of pure noise
     /// whether much of the record is unexplained, and the residual is not noise
     bool is_unexplained = false;
-    std::optional<Follows> misfit = {};       ///< pattern in the residual that indicates a wrong model
-    std::vector<Follows> other_misfits = {};  ///< patterns that explain the residual about as well
+    /// what the residual follows if the model is wrong: the best explanation, then those that are about as good
+    std::vector<Follows> misfit = {};
     /// standard deviation without that pattern, or that of the record itself if less
     double noise_without_misfit = 0;
     bool has_errors = true;                ///< false if the model is so wrong that errors are meaningless

@@ -188,14 +188,13 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind
     const auto better = [](const Found& a, const Found& b) { return a.search.most() > b.search.most(); };
     std::sort(found.begin(), found.end(), better);
     const Found& best = found.front();
-    Misfit worst{.what = best.structure->what};
+    Misfit worst{.follows = {best.structure->what}};
     const double odds = 2 * std::log(20.0);
     for (const Found& other : found) {
-        const bool is_told = other.structure->what == worst.what ||
-                             std::count(worst.others.begin(), worst.others.end(), other.structure->what) > 0;
+        const bool is_told = std::count(worst.follows.begin(), worst.follows.end(), other.structure->what) > 0;
         if (is_told || best.search.most() * best.search.most() > other.search.most() * other.search.most() + odds)
             continue;
-        worst.others.push_back(other.structure->what);
+        worst.follows.push_back(other.structure->what);
     }
     Eigen::MatrixXd all = slopes;
     for (const Eigen::Index i : best.search.found()) all = beside(all, best.structure->columns.col(i));

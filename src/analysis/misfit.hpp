@@ -32,12 +32,11 @@ struct Structure {
 Structure drift(std::span<const double> times, std::span<const int> columns, int column, bool is_white);
 
 struct Misfit {
-    Follows what = Follows::velocity;
-    std::vector<Follows> others = {};  ///< further dependences that explain the residual about as well
-    bool is_sure = false;              ///< whether chance would produce it in less than one of a hundred records
-    double share = 0;                  ///< fraction of the residual's sum of squares that its terms explain
-    double noise = 0;                  ///< standard deviation of the residual without them
-    Eigen::VectorXd shift = {};        ///< change of the parameters when its terms are added to the model
+    std::vector<Follows> follows;  ///< what explains the residual best, then all that explains it about as well
+    bool is_sure = false;          ///< whether chance would produce it in less than one of a hundred records
+    double share = 0;              ///< fraction of the residual's sum of squares that the terms of the first explain
+    double noise = 0;              ///< standard deviation of the residual without them
+    Eigen::VectorXd shift = {};    ///< change of the parameters when they are added to the model
 
     /// The parameters are not corrected, so their error includes the whole shift, multiplied by the root of 2 as a
     /// margin.
@@ -52,8 +51,8 @@ struct NoiseKind {
     bool is_uneven = false;  ///< stronger in some parts of the record than in others
 };
 
-/// The most significant structure; empty if all may be noise. `slopes` are the derivatives
-/// with respect to the parameters, `columns` the measured column of each number.
+/// The most significant structure; empty if all may be noise. `slopes` are the derivatives with respect to the
+/// parameters, `columns` the measured column of each number.
 std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
                                 const Eigen::MatrixXd& slopes, std::span<const Structure> structures);
 

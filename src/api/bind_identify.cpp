@@ -985,8 +985,7 @@ private:
             if (is_silent) add_bounds(free_[i], value, found, place, fit);
         }
         if (found.is_wrong()) {
-            fit.found.misfit = found.misfit->what;
-            fit.found.other_misfits = found.misfit->others;
+            fit.found.misfit = found.misfit->follows;
             fit.found.noise_without_misfit = std::min(found.misfit->noise, 1.0) * columns_.front().size;
             fit.found.has_errors = found.misfit->leaves_errors();
         }
@@ -1234,11 +1233,9 @@ std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     }
     if (found.is_noise) {
         notes.emplace_back("it fits the record no better than it would fit noise, so there may be no motion in it");
-    } else if (found.misfit) {
-        std::vector<analysis::Follows> whats{*found.misfit};
-        whats.insert(whats.end(), found.other_misfits.begin(), found.other_misfits.end());
+    } else if (!found.misfit.empty()) {
         std::vector<std::string> names, questions;
-        for (const analysis::Follows what : whats) {
+        for (const analysis::Follows what : found.misfit) {
             const auto i = static_cast<std::size_t>(what);
             names.push_back(what == analysis::Follows::theta ? "theta"
                                                              : fmt::format("the {}", analysis::follows_names[i]));
@@ -1259,7 +1256,7 @@ std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     }
     if (!found.has_errors && !found.is_noise) {
         notes.emplace_back("standard errors are left out: they hold only if the model is right");
-    } else if (found.misfit) {
+    } else if (!found.misfit.empty()) {
         notes.emplace_back("the errors include how far this moves the values");
     }
     constexpr double alike = 1.3;
@@ -1338,7 +1335,8 @@ std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
 /// The quantity that the residual depends on; none if it looks like noise.
 std::optional<std::string> misfit_of_fit(const FitAnswer& fit) {
     if (fit.found.is_noise) return {};
-    if (fit.found.misfit) return std::string(analysis::follows_names[static_cast<std::size_t>(*fit.found.misfit)]);
+    const auto& misfit = fit.found.misfit;
+    if (!misfit.empty()) return std::string(analysis::follows_names[static_cast<std::size_t>(misfit.front())]);
     return fit.found.is_unexplained ? std::optional<std::string>("something else") : std::nullopt;
 }
 

@@ -238,7 +238,11 @@ public:
                                    std::string(at_call.example));
         }
         if (function_) place_ = push_function(L, options, "at");
-        function_ ? refuse_harmonic() : check_harmonic();
+        if (function_) {
+            refuse_harmonic();
+        } else {
+            check_harmonic();
+        }
         if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
     }
 

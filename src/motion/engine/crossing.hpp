@@ -124,7 +124,7 @@ private:
     [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         constexpr double few = 64;
-        double shortest = 1e-10;  // of a part; a series that stays about its error would have no end of them
+        double least = 1e-10;  // length of a part; grows, as a series that stays near its error would have many parts
         const double error = few * tail(series_);
         if (error <= floor_) return of_series(half, start, {}, series_, values_);
         const auto raised = [&](double sign, double by) {
@@ -136,7 +136,7 @@ private:
         while (start < 1) {
             const auto from = first_below(clear, start);
             if (!from) break;
-            const double first = std::max(start, *from), inside = std::min(1.0, first + shortest);
+            const double first = std::max(start, *from), inside = std::min(1.0, first + least);
             const auto back = first_below(unclear, inside), through = first_below(passed, inside);
             const double last = std::min({1.0, back.value_or(1), through.value_or(1)});
             const Part part{(first + last) / 2, (last - first) / 2};
@@ -145,7 +145,7 @@ private:
             if (const auto x = of_series(half, first, part, fit(values), values)) return x;
             if (const auto x = refined(half, first, last)) return x;
             start = last;
-            shortest *= 4;
+            least *= 4;
         }
         return {};
     }

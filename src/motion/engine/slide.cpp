@@ -241,11 +241,15 @@ void Slides::start(Piecewise& function, Now& now) {
     if (sides && sides->own.margin == 0) begin(function, {.jump = of.jump}, now);
 }
 
+void Slides::drop(const Piecewise& function) {
+    sliding_.erase(std::find_if(sliding_.begin(), sliding_.end(),
+                                [&](const Sliding& each) { return each.function == &function; }));
+}
+
 /// Moves all slides onto the pieces behind a break.
 void Slides::renew(Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {
-        sliding_.erase(std::find_if(sliding_.begin(), sliding_.end(),
-                                    [&](const Sliding& each) { return each.function == was.function; }));
+        drop(*was.function);
         if (begin(*was.function, {.jump = was.jump, .of_place = was.of_place}, now)) continue;
         was.function->let_go(), changes.push_back({was.joint, false});
     }
@@ -256,8 +260,7 @@ void Slides::end_lost(const Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {
         const Sides sides = both(was, now.here());
         if (sides.differ()) continue;
-        sliding_.erase(std::find_if(sliding_.begin(), sliding_.end(),
-                                    [&](const Sliding& each) { return each.function == was.function; }));
+        drop(*was.function);
         was.function->leave(sides.own.rate < 0 ? 1 : 0);
         left_at_ = now.t.hi, left_ = was.function;
         changes.push_back({was.joint, false});

@@ -1,6 +1,7 @@
 // Slides of the motion along a surface on which a load, or the rate of a state, jumps and both sides drive the motion
 // back (Filippov). The load is then the mixture of both sides that keeps the motion on the surface. If the condition
-// depends on angles and time only, the loads bend the motion back to it, which passes it ever faster: its place.
+// depends on angles and time only, the loads accelerate the motion back to the surface, which it passes at ever shorter
+// intervals; such a surface is called a place.
 #pragma once
 
 #include <optional>
@@ -99,9 +100,10 @@ private:
     void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
     [[nodiscard]] std::optional<std::vector<double>> rates_along(const Sliding& of, std::size_t condition,
                                                                  const Now& now, const Sides& sides) const;
+    void drop(const Piecewise& function);
     std::vector<Sliding> sliding_;
-    const Piecewise* left_ = nullptr;
-    double left_at_ = -model::never;
+    const Piecewise* left_ = nullptr;  ///< the function whose slide contacts ended last
+    double left_at_ = -model::never;   ///< when they did
 };
 
 }  // namespace dinal::motion::engine

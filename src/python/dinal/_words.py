@@ -192,7 +192,7 @@ def in_sentence(text):
 
 WORDS = [(r"\bsys([:.])(?=[a-z])", r"osc\1"), (r"\b([a-z]\w*):(?=[a-z])", r"\1."), (r"\b(got|returned) nil\b", r"\1 None"), (r"\bgot true\b", "got True"),
          (r"\bgot false\b", "got False"), (r"\btrue or false\b", "True or False"), (r"\bmath\.huge\b", "math.inf"),
-         (r"\b(got|returned) a table\b", r"\1 a dict or a list"), (r"\ban empty table\b", "an empty dict or list"), (r"\ba vector or a table of\b", "an array or a list of"),
+         (r"\b(got|returned) a table\b", r"\1 a dict or a list"), (r"\ba vector or a table of\b", "an array or a list of"),
          (r"\ba table or a vector\b", "a list or an array"),
          (r"\ba table of numbers or a vector\b", "a list or an array of numbers"), (r"\ba vector\b", "an array"),
          (r"\bone table of (curves and )?named options\b", r"\1keyword arguments"), (r"\bnamed options\b", "keyword arguments"),
