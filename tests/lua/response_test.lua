@@ -101,6 +101,11 @@ test("the theory curves beside a response are Den Hartog's and that of equivalen
     local c = sys:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 20) }, between = true }
     local exact, about = c.den_hartog, c.linearised
     equal(#exact, 400)
+    for name, values in pairs { omega = { 1.5, 2 }, period = { 4, 3 } } do
+        local other = sys:response{ amplitude = 2, over = { [name] = values } }.den_hartog
+        local w = name == "omega" and other.omega[200] or 2*math.pi/other.period[200]
+        near(other.amplitude[200], 2/4 * theory.den_hartog{ r = w/sys.omega0, zeta = sys.zeta, friction_ratio = 0.15 }, 1e-12)
+    end
     local r = exact.frequency[200] * sys.T0
     near(exact.amplitude[200], 2/4 * theory.den_hartog{ r = r, zeta = sys.zeta, friction_ratio = 0.15 }, 1e-12)
     -- The work of M, pi M0 X sin(lag), is what both frictions take from a sine of this amplitude.
