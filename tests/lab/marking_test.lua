@@ -99,6 +99,8 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   hand_in("loop", "lab.number(3001) check('1c', 3) while true do end")
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
+  hand_in("._1-1001", "\0\5\22\7") -- beside each file in archives made by macOS
+  hand_in("wide", "\xFF\xFEl\0a\0b\0")
   hand_in("leaves", "io.open('x', 'w')")
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
   hand_in('a",1,1a,right,1,"b', "lab.number(3004)\ncheck('1a', 1)") -- a name like a line of marks
@@ -129,6 +131,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   assert(rows.loop:find "^3001 .*it ran longer than the 4 s", rows.loop)
   assert(rows.wrong:find "^none +wrong%.lua:2: .*; no answer was checked", rows.wrong)
   assert(rows.flood:find "^none .*File too large", rows.flood)
+  assert(not rows["._1-1001"] and rows.wide:find "UTF%-16: save it in UTF%-8", said)
   assert(rows.leaves:find "^none .*safe mode", rows.leaves)
   assert(rows["-e"]:find "^3003 +%- ", said)
   assert(rows['a",1,1a,right,1,"b']:find "^3004 +%- ", said)
