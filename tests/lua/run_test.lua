@@ -148,6 +148,7 @@ test("a selection of columns can be saved", function()
     refuses(function(o) run:save(name, o) end, {
         { { columns = { "thta" } }, "thta", "did you mean" },
         { { columns = {} }, "columns must be a list" },
+        { { columns = { "t", 1 } }, "columns names 't' twice" },
         { { column = { "t" } }, "did you mean 'columns'?" },
     })
     raises_here(function() run:save(temporary ".dat", { columns = { "t" } }) end, "six columns")
