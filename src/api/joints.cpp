@@ -140,6 +140,9 @@ model::Joint read_body(lua_State* L, const std::string& call, model::Body& body)
     model::Joint joint = asked_joint(L, options, body.inertia);
     if (!options.has("I") && !body.moved) options.missing("I");
     if (body.moved && !options.has("I")) body.inertia = 0, body.moved->without_inertia = true;
+    if (body.moved && joint.walls) {
+        options.fail("walls", "rigid walls cannot stop a body that is moved; leave them out, or give them a stiffness");
+    }
     return joint;
 }
 
