@@ -123,6 +123,11 @@ test("an exponential that outgrows the motion is followed at once", function()
 
 end)
 
+test("a turn within the rounding of the start is no event", function()
+    local task = { theta0 = 1, velocity0 = 1e-9, t_start = 1e9, t_end = 1e9 + 3, integrator = integrator.spectral {} }
+    equal(#system { I = 1, k = 1 }:simulate(task).events, 0)
+end)
+
 test("a step of M at the end of a step of rk4 acts from there on", function()
     local sys, options = system { I = 1, k = 4, C = 0.1, Rd = 0.1 }, { M = excitation.step { at = 1, amplitude = 2 }, theta0 = 0.5, t_end = 5, dt = 0.5 }
     local exact = sys:simulate(options)
