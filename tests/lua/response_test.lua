@@ -157,6 +157,9 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
             for line, amplitude in pairs{ [1] = 3, [17] = 4, [41] = 2, [100] = 0 } do near(s.amplitude[line], amplitude, 1e-9) end
         end
     end
+    -- The flat top of ISO 18431-2 spreads a line over four to each side.
+    local flat = run:spectrum("M", { window = "flat top", from = 8 }).amplitude
+    for i, part in ipairs{ 1.933, 1.286, 0.388, 0.0322 } do near(flat[17 + i], 4 * part / 2, 1e-9) end
     equal(tostring(run:spectrum("M")):match("^[^\n]*"), "spectrum of M: 1536 rows, hann window")
     -- A prime number of rows is used as it is: 97 of them, 3 periods.
     local prime = sys:simulate{ M = excitation.harmonic{ amplitude = 4, frequency = 1 }, t_end = 3 * 96/97, dt = 3/97 }
