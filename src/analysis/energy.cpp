@@ -110,7 +110,7 @@ private:
             // The end state is behind an impact, as the work includes its loss.
             const model::State &begin = stretch_->begin,
                                &end = stretch_ != last_ ? (stretch_ + 1)->begin : stretch_->end;
-            const Balance balance{work, store_.change(begin, end)};
+            const EnergyBalance balance{work, store_.change(begin, end)};
             energy_.half_cycles.push_back({stretch_->from, stretch_->to, begin.theta, end.theta, balance});
             // Passing theta = 0, the spring releases all of its energy.
             const bool through = (begin.theta < 0) != (end.theta < 0);
@@ -196,7 +196,7 @@ Eigen::MatrixXd energy_columns(const motion::Run& run, Whose whose) {
         sum.add(last);
         const model::State y{theta[row], velocity[row]};
         const Stored s = store.at(y);
-        const Balance balance{sum.value(), store.change(run.initial, y)};
+        const EnergyBalance balance{sum.value(), store.change(run.initial, y)};
         columns.row(row++) << balance.work.input, s.kinetic, s.spring + balance.work.kept, balance.work.viscous,
             balance.work.dry, balance.error(), balance.work.belt, balance.work.base, balance.work.acts,
             balance.work.impacts;

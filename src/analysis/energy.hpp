@@ -26,12 +26,14 @@ struct Stored {
 
 using motion::Work;
 
-struct Balance {
+struct EnergyBalance {
     Work work;
     Stored change;
-    Balance() = default;
+    EnergyBalance() = default;
     /// The springs of sliders store the work `kept`, as their energy does not follow from the state.
-    Balance(const Work& done, const Stored& by_state) : work(done), change(by_state) { change.spring += done.kept; }
+    EnergyBalance(const Work& done, const Stored& by_state) : work(done), change(by_state) {
+        change.spring += done.kept;
+    }
     /// The closure error: input - (kinetic + spring + viscous + dry + impacts).
     [[nodiscard]] double error() const {
         const double given = work.belt + work.base + work.acts;
@@ -43,7 +45,7 @@ struct Balance {
 struct HalfCycle {
     double t_start = 0, t_end = 0;
     double theta_start = 0, theta_end = 0;
-    Balance balance;
+    EnergyBalance balance;
 };
 
 /// The subject of a balance; a link has no inertia.
@@ -52,7 +54,7 @@ enum class Whose { all, body, link };
 struct Energy {
     double t_start = 0, t_end = 0;
     Stored start, finish;
-    Balance total;
+    EnergyBalance total;
     /// The energy flow: M's input and energy released by spring and mass, summed over half cycles.
     double flow = 0;
     std::vector<HalfCycle> half_cycles;

@@ -11,27 +11,17 @@
 #include <utility>
 
 #include "algebra/decompositions.hpp"
+#include "analysis/fit_starts.hpp"
 #include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
 #include "analysis/missing_torques.hpp"
 #include "analysis/noise_memory.hpp"
-#include "analysis/repetition.hpp"
-#include "analysis/turning_points.hpp"
 #include "motion/integrators.hpp"
 #include "theory/theory_free.hpp"
 
 namespace dinal::analysis {
 namespace {
-
-using Parameters = std::array<double, unknown_count>;
-
-double& at(Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
-double at(const Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
 
 constexpr std::array<Unknown, unknown_count> all_unknowns{
     Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
@@ -39,10 +29,9 @@ constexpr std::array<Unknown, unknown_count> all_unknowns{
 /// Returns whether the parameter is fitted. A free decay does not determine I, which sets the unit of torque, nor Re,
 /// which acts only at the final rest.
 bool is_sought(const IdentifyQuestion& question, Unknown which) {
-    const auto is_given = [&](Unknown one) { return question.given[static_cast<std::size_t>(one)].has_value(); };
-    if (is_given(which)) return false;
+    if (question.gives(which)) return false;
     if (question.M) return true;
-    return which != Unknown::Re && (which != Unknown::I || is_given(Unknown::k));
+    return which != Unknown::Re && (which != Unknown::I || question.gives(Unknown::k));
 }
 
 /// Two fits count as one if their sums of squares differ by no more than this part.
@@ -79,19 +68,6 @@ double dry_of(const Parameters& p) {
     return at(p, Unknown::Rd) / at(p, Unknown::k);
 }
 
-/// Fits S' = slope S - lost to successive swings.
-std::pair<double, double> line_through(const std::vector<double>& swings) {
-    const auto n = static_cast<Eigen::Index>(swings.size() - 1);
-    Eigen::MatrixXd A(n, 2);
-    Eigen::VectorXd b(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        A.row(i) << swings[static_cast<std::size_t>(i)], -swings.front();
-        b[i] = swings[static_cast<std::size_t>(i) + 1];
-    }
-    const Eigen::VectorXd x = algebra::solve_least_squares(A, b);
-    return {x[0], x[1] * swings.front()};
-}
-
 /// The parameters of the half-cycle map of a decay; empty if the system does not oscillate.
 struct Decay {
     theory::Extreme first;
@@ -117,48 +93,16 @@ std::optional<Decay> decay_of(const Parameters& p) {
     return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
 }
 
-/// The measured angles, with properties that need no model.
-struct Record {
-    explicit Record(const IdentifyQuestion& question)
-        : theta(question.theta.size()),
-          cut(cut_off(question.theta)),
-          span(question.t.back() - question.t.front()),
-          noise(noise_of(question.theta)),
-          step(step_of_instrument(question.theta)) {
-        std::copy(question.theta.begin(), question.theta.end(), theta.data());
-        range = theta.maxCoeff() - theta.minCoeff();
-        turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
-    }
-
-    /// Returns whether the last samples are equal to within noise.
-    [[nodiscard]] bool ends_at_rest() const {
-        const Eigen::Index n = theta.size();
-        const auto tail = theta.tail(std::min(n, std::max<Eigen::Index>(8, n / 30)));
-        return tail.maxCoeff() - tail.minCoeff() <= 8 * noise + 1e-6 * range;
-    }
-    /// The natural frequency of one full swing per sample.
-    [[nodiscard]] double highest_omega0() const {
-        constexpr double whole_turn = 2 * std::numbers::pi;
-        return whole_turn * static_cast<double>(theta.size() - 1) / span;
-    }
-
-    Eigen::VectorXd theta;
-    CutOff cut;
-    double range, span, noise;
-    double step;                     // resolution of the instrument; 0 if none is visible
-    std::vector<std::size_t> turns;  // indices of the turning points
-};
-
 /// Fits from several starts and keeps the best result.
 class Identification {
 public:
     Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
-        : question_(question), monitor_(monitor), record_(question) {
+        : question_(question), monitor_(monitor), record_(question), starts_(question, record_) {
         choose_unknowns();
     }
 
     text::Expected<Identified> identified() {
-        std::vector<Parameters> starts = question_.M ? forced_starts() : free_starts();
+        std::vector<Parameters> starts = starts_.all();
         for (left_out_ = 0; left_out_ < (question_.M ? 1U : 3U); ++left_out_) {
             for (const Parameters& start : starts) {
                 if (stopped_ || (best_ && (is_settled() || (agreed_ > 1 && !leaves_pattern(suspected))))) break;
@@ -181,13 +125,6 @@ public:
     }
 
 private:
-    [[nodiscard]] bool is_given(Unknown which) const {
-        return question_.given[static_cast<std::size_t>(which)].has_value();
-    }
-    [[nodiscard]] double given(Unknown which, double otherwise) const {
-        return question_.given[static_cast<std::size_t>(which)].value_or(otherwise);
-    }
-
     void choose_unknowns() {
         std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
                      [this](Unknown which) { return is_sought(question_, which); });
@@ -218,7 +155,8 @@ private:
         constexpr double most = 10;  // ranges of the record between two samples
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
         return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
-               (is_given(Unknown::velocity0) || std::fabs(at(p, Unknown::velocity0)) <= most * record_.range * highest);
+               (question_.gives(Unknown::velocity0) ||
+                std::fabs(at(p, Unknown::velocity0)) <= most * record_.range * highest);
     }
 
     /// The motion with these parameters, clipped like the record.
@@ -273,9 +211,10 @@ private:
         parts.stiffness = at(p, Unknown::k);
         parts.damping = at(p, Unknown::C);
         parts.kinetic_friction = at(p, Unknown::Rd);
-        const bool own_breakaway = is_given(Unknown::Re) || question_.M || breakaway_ > 0;
+        const bool own_breakaway = question_.gives(Unknown::Re) || question_.M || breakaway_ > 0;
         if (own_breakaway) {
-            const double Re = question_.M || is_given(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
+            const double Re =
+                question_.M || question_.gives(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
             parts.breakaway = std::max(Re, parts.kinetic_friction);
         }
         const auto system = model::Oscillator::make(parts);
@@ -347,7 +286,7 @@ private:
 
     /// Also searches from initial velocity 0, because a search may end at a velocity that decays between two samples.
     void try_let_go(const std::vector<Parameters>& starts) {
-        if (is_given(Unknown::velocity0)) return;
+        if (question_.gives(Unknown::velocity0)) return;
         const Eigen::Index place = place_of(Unknown::velocity0);
         for (const Parameters& start : starts) {
             if (stopped_ || !((question_.M && &start == starts.data()) || leaves_pattern(suspected))) return;
@@ -408,190 +347,6 @@ private:
         return deviation() <= std::max(1.06 * record_.noise, 1e-9 * record_.range);
     }
     [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
-
-    // ---- starting values: from the extremes of a free decay, or by the weak form of the driven equation
-
-    [[nodiscard]] Parameters common_start(double omega0, double zeta, double dry, double zero) const {
-        Parameters p{};
-        at(p, Unknown::I) =
-            given(Unknown::I, is_given(Unknown::k) && omega0 > 0 ? given(Unknown::k, 1) / (omega0 * omega0) : 1);
-        at(p, Unknown::k) = given(Unknown::k, at(p, Unknown::I) * omega0 * omega0);
-        at(p, Unknown::C) = given(Unknown::C, 2 * zeta * std::sqrt(at(p, Unknown::I) * at(p, Unknown::k)));
-        at(p, Unknown::Rd) = given(Unknown::Rd, dry * at(p, Unknown::k));
-        at(p, Unknown::Re) = given(Unknown::Re, at(p, Unknown::Rd));
-        at(p, Unknown::offset) = given(Unknown::offset, zero);
-        const double a_while = 0.15 / omega0;  // the motion is nearly straight for this time
-        const auto bent = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
-        const Tangent tangent =
-            first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
-        at(p, Unknown::theta0) = given(Unknown::theta0, tangent.value - at(p, Unknown::offset));
-        // A slope within the noise counts as 0, as most masses start at rest.
-        const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
-        const double unsure = 3 * record_.noise * std::sqrt(12 / samples) / a_while;
-        at(p, Unknown::velocity0) = given(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
-        return p;
-    }
-
-    /// The half-cycle map X' - zero = -q (X - zero) -+ (1 + q) dry determines the remaining starting values from the
-    /// turning points.
-    [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const {
-        const double ratio = -std::log(q) / std::numbers::pi, zeta = ratio / std::hypot(1, ratio);
-        double zero = 0;
-        for (std::size_t i = 0; i + 1 < record_.turns.size(); ++i) {
-            const double a = question_.theta[record_.turns[i]], b = question_.theta[record_.turns[i + 1]];
-            zero += ((b + q * a) / (1 + q) - (a > b ? dry : -dry)) / static_cast<double>(record_.turns.size() - 1);
-        }
-        return common_start(omega1 / std::sqrt(1 - zeta * zeta), zeta, dry, zero);
-    }
-
-    [[nodiscard]] std::vector<Parameters> free_starts() const {
-        std::vector<Parameters> starts;
-        const std::size_t n = record_.turns.size();
-        if (n < 2) {
-            const double rest = question_.theta.back();
-            for (const double half : {0.5, 0.25, 1.0, 0.1, 2.0}) {
-                for (const double zeta : {0.05, 0.5}) {
-                    starts.push_back(
-                        common_start(std::numbers::pi / (half * record_.span), zeta, 0.1 * record_.range, rest));
-                }
-                starts.push_back(
-                    common_start(std::numbers::pi / (half * record_.span), 1.5, 0.02 * record_.range, rest));
-            }
-            return starts;
-        }
-        const double omega1 = std::numbers::pi * static_cast<double>(n - 1) /
-                              (question_.t[record_.turns.back()] - question_.t[record_.turns.front()]);
-        std::vector<double> swings;
-        for (std::size_t i = 0; i + 1 < n; ++i) {
-            swings.push_back(std::fabs(question_.theta[record_.turns[i]] - question_.theta[record_.turns[i + 1]]));
-        }
-        const double steps = std::max(1.0, static_cast<double>(swings.size() - 1));
-        const double q = std::clamp(std::pow(swings.back() / swings.front(), 1 / steps), 0.02, 0.9999);
-        const double loss = std::max(0.0, (swings.front() - swings.back()) / (4 * steps));
-        if (swings.size() >= 3) {
-            const auto [slope, lost] = line_through(swings);
-            if (slope > 0.05 && slope < 1.02 && lost > -0.02 * record_.range) {
-                const double kept = std::min(slope, 0.9999);
-                starts.push_back(start_of(kept, std::max(0.0, lost / (2 * (1 + kept))), omega1));
-            }
-        }
-        starts.push_back(start_of(std::sqrt(q), loss / 2, omega1));
-        starts.push_back(start_of(0.995, swings.size() > 1 ? loss : 0.05 * record_.range, omega1));
-        starts.push_back(start_of(swings.size() > 1 ? q : 0.7, 1e-3 * record_.range, omega1));
-        return starts;
-    }
-
-    [[nodiscard]] std::vector<Parameters> forced_starts() const {
-        std::vector<Parameters> starts;
-        const Parameters weak = weak_form();
-        for (const double factor : {1.0, 1.3, 0.7, 2.0}) {
-            for (const double breakaway : {1.05, 1.4}) {
-                Parameters p = weak;
-                if (!is_given(Unknown::Rd)) at(p, Unknown::Rd) *= factor;
-                if (!is_given(Unknown::Re)) at(p, Unknown::Re) = breakaway * at(p, Unknown::Rd);
-                starts.push_back(p);
-                if (is_given(Unknown::Re)) break;
-            }
-        }
-        return starts;
-    }
-
-    [[nodiscard]] Parameters weak_form() const {
-        std::vector<std::array<double, 6>> rows;
-        std::vector<std::size_t> edges{0};
-        edges.insert(edges.end(), record_.turns.begin(), record_.turns.end());
-        edges.push_back(question_.t.size() - 1);
-        for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-            const std::size_t n = edges[i + 1] - edges[i];
-            const double rise = question_.theta[edges[i + 1]] - question_.theta[edges[i]];
-            if (n < 8 || std::fabs(rise) < 0.04 * record_.range) continue;
-            const std::size_t margin = n / 10;  // near a turn or stop the sign of the velocity is uncertain
-            const std::size_t begin = edges[i] + margin, end = edges[i + 1] - margin, third = (end - begin) / 3;
-            const double sign = rise > 0 ? 1 : -1;
-            add_window(begin, end, sign, rows);
-            if (third >= 6) {
-                add_window(begin, end - third, sign, rows);
-                add_window(begin + third, end, sign, rows);
-            }
-        }
-        // The unknowns are I, k, C, Rd and k offset; given values move to the right-hand side.
-        const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
-        std::vector<std::size_t> columns;
-        for (std::size_t c = 0; c < 5; ++c) {
-            const bool known =
-                c < 4 ? is_given(order[c]) : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
-            if (!known) columns.push_back(c);
-        }
-        const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());
-        std::array<double, 5> x{};
-        for (std::size_t c = 0; c < 4; ++c) x[c] = given(order[c], 0);
-        if (n >= m && m > 0) {
-            Eigen::MatrixXd A(n, m);
-            Eigen::VectorXd b(n);
-            for (Eigen::Index i = 0; i < n; ++i) {
-                const auto& row = rows[static_cast<std::size_t>(i)];
-                b[i] = row[5];
-                for (std::size_t c = 0; c < 5; ++c) b[i] -= row[c] * x[c];
-                for (Eigen::Index j = 0; j < m; ++j) A(i, j) = row[columns[static_cast<std::size_t>(j)]];
-            }
-            // Columns are normalised, so that units do not affect which of them counts as dependent.
-            const Eigen::VectorXd lengths = A.colwise().norm().cwiseMax(1e-300);
-            const Eigen::VectorXd solved = algebra::solve_least_squares(A * lengths.cwiseInverse().asDiagonal(), b);
-            for (Eigen::Index j = 0; j < m; ++j) x[columns[static_cast<std::size_t>(j)]] = solved[j] / lengths[j];
-        }
-        const double omega = record_.turns.size() >= 2
-                                 ? std::numbers::pi * static_cast<double>(record_.turns.size() - 1) /
-                                       (question_.t[record_.turns.back()] - question_.t[record_.turns.front()])
-                                 : 2 * std::numbers::pi / record_.span;
-        // If noise or stops prevent an estimate, use a system with the scales of the record.
-        double most = 0;
-        for (const double t : question_.t) most = std::max(most, std::fabs(question_.M->value(t)));
-        if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / record_.range;
-        if (!(x[0] > 0)) x[0] = x[1] / (omega * omega);
-        if (x[1] > x[0] * record_.highest_omega0() * record_.highest_omega0()) {
-            (is_given(Unknown::I) ? x[1] : x[0]) = is_given(Unknown::I) ? x[0] * omega * omega : x[1] / (omega * omega);
-        }
-        x[2] = std::max(x[2], 0.0);
-        x[3] = x[3] > 0 ? x[3] : is_given(Unknown::Rd) ? given(Unknown::Rd, 0) : 0.05 * most;
-        const double omega0 = std::sqrt(x[1] / x[0]);
-        Parameters p = common_start(omega0, 0, 0, x[4] / x[1]);
-        at(p, Unknown::I) = x[0];
-        at(p, Unknown::k) = x[1];
-        at(p, Unknown::C) = x[2];
-        at(p, Unknown::Rd) = x[3];
-        at(p, Unknown::Re) = given(Unknown::Re, x[3]);
-        return p;
-    }
-
-    /// Adds the weak form on an interval without a turn, with a bump w whose value and first two derivatives vanish at
-    /// both ends: I int w'' theta - C int w' theta + k int w (theta - offset) + s Rd int w = int w M.
-    void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const {
-        const model::Excitation& M = *question_.M;
-        // the jumps of M are known, and it is cheap to evaluate
-        const bool asks_all = std::isfinite(M.most()) && !M.has_feedback();
-        const double a = question_.t[first], length = question_.t[last] - a;
-        std::array<double, 6> row{};
-        for (std::size_t i = first; i <= last; ++i) {
-            const double s = (question_.t[i] - a) / length, u = s * (1 - s), du = (1 - 2 * s) / length;
-            const double weight = (question_.t[std::min(i + 1, last)] - question_.t[i == first ? i : i - 1]) / 2;
-            const double w = u * u * u, w1 = 3 * u * u * du, w2 = 6 * u * du * du - 6 * u * u / (length * length);
-            const double theta = question_.theta[i];
-            row[0] += weight * w2 * theta;
-            row[1] += weight * w * theta;
-            row[2] -= weight * w1 * theta;
-            row[3] += weight * w * sign;
-            row[4] -= weight * w;
-            if (!asks_all) row[5] += weight * w * M.value(question_.t[i], {theta, 0});
-        }
-        if (asks_all) {
-            constexpr double pieces = 16;
-            row[5] = integral(M, a, a + length, length / pieces, [&](double t) {
-                const double s = (t - a) / length, u = s * (1 - s);
-                return u * u * u * M.value(t);
-            });
-        }
-        rows.push_back(row);
-    }
 
     // ---- the turn at which a free decay comes to rest
     //
@@ -684,8 +439,8 @@ private:
         std::vector<Parameters> starts;
         for (const double dry : {0.2, 0.5, 0.8}) {
             const double q = 1 - (1 - dry) * lost / whole, ratio = -std::log(q) / std::numbers::pi;
-            starts.push_back(
-                common_start(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q), at(best, Unknown::offset)));
+            starts.push_back(starts_.completed(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q),
+                                               at(best, Unknown::offset)));
         }
         return starts;
     }
@@ -698,7 +453,7 @@ private:
         const double here = std::fabs(decay->size_at(turn)), least = std::max(decay->shift, here);
         const double most = turn > 0 ? decay->size_at(turn - 1) : 3 * least;
         if (!(least < most)) return {};
-        if (is_given(Unknown::Re)) {
+        if (question_.gives(Unknown::Re)) {
             const double holds = std::max(at(p, Unknown::Re) / at(p, Unknown::k), decay->shift);
             return holds >= here && holds < most ? std::optional(0.0) : std::nullopt;
         }
@@ -740,7 +495,7 @@ private:
     [[nodiscard]] bool try_other_beginnings() {
         std::vector<Unknown> first;
         for (const Unknown which : {Unknown::velocity0, Unknown::theta0}) {
-            if (!is_given(which)) first.push_back(which);
+            if (!question_.gives(which)) first.push_back(which);
         }
         if (first.empty()) return false;
         const Parameters best = filled_best();
@@ -849,12 +604,13 @@ private:
         const double before = best_->sum;
         std::vector<std::pair<double, Parameters>> looks;
         const std::size_t rows = question_.t.size();
-        for (const Parameters& from : {filled_best(), weak_form()}) {
+        for (const Parameters& from : {filled_best(), starts_.weak_form()}) {
             const double I = at(from, Unknown::I), k = at(from, Unknown::k);
             for (const double faster : {0.6, 0.8, 1.0, 1.25, 1.6}) {
                 Parameters p = from;
-                if (!is_given(Unknown::I)) at(p, Unknown::I) = I / (faster * faster);
-                if (is_given(Unknown::I) && !is_given(Unknown::k)) at(p, Unknown::k) = k * faster * faster;
+                if (!question_.gives(Unknown::I)) at(p, Unknown::I) = I / (faster * faster);
+                if (question_.gives(Unknown::I) && !question_.gives(Unknown::k))
+                    at(p, Unknown::k) = k * faster * faster;
                 const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
                 const double speed =
                     record_.range * omega0 * std::numbers::pi / 8;  // mean speed of a swing over half the range
@@ -863,9 +619,9 @@ private:
                 for (const double more : {0.5, 1.0, 2.0}) {
                     for (const double dry : {0.05, 0.35, 0.65, 0.95}) {
                         for (const double breakaway : {1.05, 1.4}) {
-                            at(p, Unknown::Rd) = given(Unknown::Rd, dry * more * lost);
-                            at(p, Unknown::C) = given(Unknown::C, (1 - dry) * more * lost / speed);
-                            at(p, Unknown::Re) = given(Unknown::Re, breakaway * at(p, Unknown::Rd));
+                            at(p, Unknown::Rd) = question_.given_or(Unknown::Rd, dry * more * lost);
+                            at(p, Unknown::C) = question_.given_or(Unknown::C, (1 - dry) * more * lost / speed);
+                            at(p, Unknown::Re) = question_.given_or(Unknown::Re, breakaway * at(p, Unknown::Rd));
                             const auto theta = stopped_ ? std::nullopt : predicted(p, rows);
                             if (theta) looks.emplace_back((record_.theta - *theta).squaredNorm(), p);
                         }
@@ -910,7 +666,7 @@ private:
         best_ = without;
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
         tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
-        if (is_flat && which == Unknown::velocity0 && !is_given(Unknown::theta0)) see_short_beginnings();
+        if (is_flat && which == Unknown::velocity0 && !question_.gives(Unknown::theta0)) see_short_beginnings();
     }
 
     /// Varies the initial velocity of a mass that stops before there are many samples; the fitted initial angles show
@@ -1111,7 +867,7 @@ private:
         Covariance covariance = weighed.covariance;
         breakaway_ = best_breakaway_;
         found.value = best_filled_ = filled_best();
-        if (!question_.M && !is_given(Unknown::Re)) {
+        if (!question_.M && !question_.gives(Unknown::Re)) {
             at(found.value, Unknown::Re) =
                 std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
             found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
@@ -1206,7 +962,7 @@ private:
         };
         for (const Structure& one : lacking) {
             const bool is_friction = one.what == Follows::velocity;
-            if (one.what == Follows::time || is_given(is_friction ? Unknown::Rd : Unknown::k)) continue;
+            if (one.what == Follows::time || question_.gives(is_friction ? Unknown::Rd : Unknown::k)) continue;
             const double size =
                 is_friction ? at(best_filled_, Unknown::Rd) : at(best_filled_, Unknown::k) * record_.range / 4;
             for (Eigen::Index i = is_friction ? first_falling : first_bent; i < one.columns.cols(); ++i) {
@@ -1391,7 +1147,8 @@ private:
 
     const IdentifyQuestion& question_;
     const motion::Monitor& monitor_;
-    Record record_;
+    MeasuredAngles record_;
+    FitStarts starts_;
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
     Parameters base_{}, best_base_{};

@@ -29,6 +29,11 @@ struct IdentifyQuestion {
     /// none: a free decay, which determines ratios only: I = 1 unless I or k is given
     std::optional<model::Excitation> M = {};
     std::array<std::optional<double>, unknown_count> given = {};  ///< values of parameters that are not fitted
+
+    [[nodiscard]] bool gives(Unknown which) const { return given[static_cast<std::size_t>(which)].has_value(); }
+    [[nodiscard]] double given_or(Unknown which, double otherwise) const {
+        return given[static_cast<std::size_t>(which)].value_or(otherwise);
+    }
 };
 
 struct IdentifiedRatio {

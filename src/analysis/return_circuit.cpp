@@ -34,7 +34,7 @@ public:
         cycles_ = timeless_ && !stands_;
         offset_ = motion.by_returns.question->repeats.start - here.question.repeats.start;
         period_ = motion.period;
-        Moment begin = Runs(asked, monitor).first();
+        FullState begin = Runs(asked, monitor).first();
         if (const auto& period = motion.by_returns.of_bodies) {
             begin.y = vector_of(period->run.left->history->at(period->run.t_start));
         }
@@ -78,7 +78,7 @@ public:
     SteadyMotion motion(const VectorXd& x, double p, const Lap& lap, const Eigen::MatrixXd& derivative) override {
         Here& here = at(p);
         // The mode at the return is that at the beginning.
-        Moment begin = moment(x, p);
+        FullState begin = full_state(x, p);
         if (!stands_ && lap.mode) begin.mode = *lap.mode;
         const model::System& system = here.runs.system();
         SteadyMotion motion;
@@ -154,7 +154,7 @@ public:
         next->way = section_.way;
         std::vector<VectorXd> moved;
         for (const auto& [x, p] : places) {
-            const Returns::Return arrival = returns(this->at(p), *next).arrival(moment(x, p));
+            const Returns::Return arrival = returns(this->at(p), *next).arrival(full_state(x, p));
             if (!arrival.finished) return {};
             moved.push_back(arrival.to);
         }
@@ -166,10 +166,12 @@ public:
     /// Marks a cycle that began as a disturbance of this rest.
     void begins_at(const VectorXd& rest) { growth_ = first_ - returns(*here_, section_).place(rest); }
     /// The moment that corresponds to a place.
-    [[nodiscard]] Moment moment(const VectorXd& x, double p) { return returns(at(p), section_).moment(x, {}); }
+    [[nodiscard]] FullState full_state(const VectorXd& x, double p) {
+        return returns(at(p), section_).full_state(x, {});
+    }
     [[nodiscard]] std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
     [[nodiscard]] std::shared_ptr<const SteadyQuestion> question_from(const VectorXd& x, double p) {
-        return begun_at(at(p).question, at(p).runs.from(moment(x, p), start(at(p))), start(at(p)));
+        return begun_at(at(p).question, at(p).runs.from(full_state(x, p), start(at(p))), start(at(p)));
     }
 
 private:
@@ -289,7 +291,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
         family, p, cycle, 1, monitor,
         Returns::Section{.measured = own[static_cast<std::size_t>(widest)], .place = low + section_at * 2 * swing});
     if (circuit->first().size() == 0) return {};
-    circuit->begins_at(still.moment(x, p).y);
+    circuit->begins_at(still.full_state(x, p).y);
     return circuit;
 }
 

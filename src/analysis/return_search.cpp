@@ -61,9 +61,9 @@ private:
     Map& map() override { return *returns_; }
     std::optional<Map::Return> begin() override;
     std::optional<Map::Return> measured(const Map::Return& from) override {
-        return measured_at(returns_->moment(from.to, from.mode));
+        return measured_at(returns_->full_state(from.to, from.mode));
     }
-    std::optional<Map::Return> measured_at(const Moment& moment);
+    std::optional<Map::Return> measured_at(const FullState& moment);
     [[nodiscard]] double range() const override { return range_; }
     [[nodiscard]] double size_at(const Map::Return& place) const override;
     bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
@@ -75,12 +75,12 @@ private:
 
     /// Completes the answer for a motion of facts_.period that begins at this moment. Returns its state half a period
     /// later; empty if it cannot be run, and the search continues.
-    std::optional<VectorXd> complete(Moment moment, double start);
+    std::optional<VectorXd> complete(FullState moment, double start);
     /// The run of a period that does not move at all, from a place beside this moment; empty if there is none.
-    std::optional<motion::Run> standing_beside(const motion::Run& run, Moment& moment, double start);
+    std::optional<motion::Run> standing_beside(const motion::Run& run, FullState& moment, double start);
     /// The same for a run that has settled up to its end and repeats after facts_.period.
     std::optional<VectorXd> complete_settled(const motion::Run& so_far);
-    std::optional<VectorXd> complete_period(const Moment& from, motion::Run run, double period);
+    std::optional<VectorXd> complete_period(const FullState& from, motion::Run run, double period);
     /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
     void complete_rest(const motion::Run& run, bool stands);
 
@@ -89,14 +89,14 @@ private:
     /// The period of M, or the slowest natural period.
     [[nodiscard]] double pace() const;
 
-    std::optional<motion::Run> stretch(const Moment& from, double start, double length, Reach& reach);
+    std::optional<motion::Run> stretch(const FullState& from, double start, double length, Reach& reach);
     [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
     class Settling;
     void cycle();
     [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
         return {measured, reach.low[measured] + section_at * (reach.high[measured] - reach.low[measured])};
     }
-    bool closes_from(const Moment& now, const Reach& reach, double length, int i);
+    bool closes_from(const FullState& now, const Reach& reach, double length, int i);
     bool rests(const motion::Run& run, const Eigen::VectorXd& range, const Eigen::VectorXd& most_changed);
     void note_rest(const motion::Run& run, bool stands);
     bool complete_closed(Returns& map, const Closed& found, bool any);
@@ -118,7 +118,7 @@ double ReturnSearch::pace() const {
 }
 
 /// Runs a stretch; none if it failed, with the reason in the answer.
-std::optional<motion::Run> ReturnSearch::stretch(const Moment& from, double start, double length, Reach& reach) {
+std::optional<motion::Run> ReturnSearch::stretch(const FullState& from, double start, double length, Reach& reach) {
     motion::Run run = runs_.run(from, start, start + length, motion::Grid::none(), true);
     facts_.outcome = run.outcome;
     reach = reach_of(run, chart_);
@@ -155,7 +155,7 @@ std::optional<Map::Return> ReturnSearch::begin() {
     constexpr double irrational_part = 0.3819660112501051;
     start_ = question().repeats.start;
     Reach reach;
-    Moment now = runs_.first();
+    FullState now = runs_.first();
     if (has_acts(question().drive)) {
         const auto run = stretch(now, start_, irrational_part * period, reach);
         if (!run) return {};
@@ -166,11 +166,11 @@ std::optional<Map::Return> ReturnSearch::begin() {
 }
 
 /// Begins one period later, where the mode is known.
-std::optional<Map::Return> ReturnSearch::measured_at(const Moment& moment) {
+std::optional<Map::Return> ReturnSearch::measured_at(const FullState& moment) {
     Reach reach;
     const auto run = stretch(moment, start_, question().repeats.period, reach);
     if (!run) return {};
-    const Moment now = Runs::at_stop(*run);
+    const FullState now = Runs::at_stop(*run);
     returns_.emplace(runs_, chart_, start_, question().repeats.period, std::nullopt, units_of(reach), now.y);
     range_ = greatest(reach, n());
     farthest_ = std::max(farthest_, range_);
@@ -178,7 +178,7 @@ std::optional<Map::Return> ReturnSearch::measured_at(const Moment& moment) {
 }
 
 double ReturnSearch::size_at(const Map::Return& place) const {
-    const VectorXd y = chart_.measured(returns_->moment(place.to, place.mode).y).cwiseAbs();
+    const VectorXd y = chart_.measured(returns_->full_state(place.to, place.mode).y).cwiseAbs();
     const double natural = runs_.natural_period(), pace = natural > 0 ? natural / (2 * std::numbers::pi) : 1;
     const double size = y.segment(n(), n()).maxCoeff() * pace;
     return natural > 0 || is_free() ? std::max(size, y.head(n()).maxCoeff()) : size;
@@ -386,7 +386,7 @@ private:
 
 void ReturnSearch::cycle() {
     const double natural = runs_.natural_period(), base = pace(), start = question().repeats.start;
-    Moment now = runs_.first();
+    FullState now = runs_.first();
     double length = base, time = 0;
     std::size_t events = 0;
     std::vector<std::pair<double, double>> ranges;  // time, range
@@ -418,7 +418,7 @@ void ReturnSearch::cycle() {
     facts_.growth = (last[0].second - last[1].second) / 2 / ((last[0].first - last[1].first) / base);
 }
 
-bool ReturnSearch::closes_from(const Moment& now, const Reach& reach, double length, int i) {
+bool ReturnSearch::closes_from(const FullState& now, const Reach& reach, double length, int i) {
     const Index widest = widest_of(reach, chart_, n());
     if (widest < 0) return false;
     Returns map(runs_, chart_, question().repeats.start, 3 * length, section(reach, widest), units_of(reach), now.y);
@@ -473,7 +473,7 @@ bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) 
     if (D) judge(question(), multipliers_of(D->by_place), {.alone = alone && D->bend < smooth}, facts);
     if (!facts.stable && !any) return false;
     const SteadyMotion before = std::exchange(facts_, std::move(facts));
-    const Moment moment = map.moment(found.x, found.mode);
+    const FullState moment = map.full_state(found.x, found.mode);
     const auto middle = complete(moment, map.start());
     if (middle) {
         note_symmetry(moment.y, *middle);
@@ -515,7 +515,7 @@ SteadyMotion ReturnSearch::found() {
 
 // ---- the answer
 
-std::optional<VectorXd> ReturnSearch::complete(Moment moment, double start) {
+std::optional<VectorXd> ReturnSearch::complete(FullState moment, double start) {
     const double period = facts_.period;
     motion::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows_of_period), true);
     if (!model::is_whole(run.outcome)) return {};
@@ -525,13 +525,13 @@ std::optional<VectorXd> ReturnSearch::complete(Moment moment, double start) {
 }
 
 /// A mass that friction holds a little longer in each period adheres in the limit, which no number of periods reaches.
-std::optional<motion::Run> ReturnSearch::standing_beside(const motion::Run& run, Moment& moment, double start) {
+std::optional<motion::Run> ReturnSearch::standing_beside(const motion::Run& run, FullState& moment, double start) {
     constexpr double tiny = 1e-8, nearest = 1e-8, farthest = 1e-3;  // relative to the motion before
     const bool creeps = n() == 1 && question().repeats.period > 0 && !run.events.empty() &&
                         reach_of_rows(run, chart_).range()[0] <= tiny * farthest_;
     for (double by = nearest; creeps && by < farthest; by *= 10) {
         for (const double aside : {-by, by}) {
-            Moment beside{moment.y};
+            FullState beside{moment.y};
             beside.y[0] += aside * farthest_, beside.y[1] = 0;
             const double end = start + facts_.period;
             motion::Run still =
@@ -552,7 +552,7 @@ std::optional<VectorXd> ReturnSearch::complete_settled(const motion::Run& so_far
 }
 
 void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
-    const Moment now = Runs::at_stop(run);
+    const FullState now = Runs::at_stop(run);
     const auto velocity = now.y.segment(n(), n());
     const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
     const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
@@ -566,7 +566,7 @@ void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
 }
 
 /// Completes the answer with a run that is one period from this moment.
-std::optional<VectorXd> ReturnSearch::complete_period(const Moment& from, motion::Run run, double period) {
+std::optional<VectorXd> ReturnSearch::complete_period(const FullState& from, motion::Run run, double period) {
     const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;

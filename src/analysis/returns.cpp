@@ -50,9 +50,9 @@ HeldMode opposite(HeldMode held) {
 bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
     constexpr double part_of_shift = 0.73;
     const double start = runs.question().repeats.start;
-    Moment plain = runs.first(), shifted = plain;
+    FullState plain = runs.first(), shifted = plain;
     shifted.y += part_of_shift * shift;
-    const auto end = [&](const Moment& from) {
+    const auto end = [&](const FullState& from) {
         return Runs::at_stop(runs.run(from, start, start + length, motion::Grid::none(), false)).y;
     };
     const Eigen::VectorXd off = end(shifted) - part_of_shift * shift - end(plain);
@@ -123,7 +123,7 @@ bool operator==(const HeldMode& a, const HeldMode& b) {
     return true;
 }
 
-Moment Runs::first() const {
+FullState Runs::first() const {
     std::vector<double> y = question_.drive.theta0;
     y.insert(y.end(), question_.drive.velocity0.begin(), question_.drive.velocity0.end());
     for (const model::OwnState& state : question_.drive.states) y.push_back(state.start);
@@ -154,7 +154,7 @@ model::Excitation with_relays(const model::Excitation& excitation, const std::ve
     });
 }
 
-model::Drive Runs::from(const Moment& moment, double start) const {
+model::Drive Runs::from(const FullState& moment, double start) const {
     model::Drive drive = question_.drive;
     const Index n = bodies();
     for (Index i = 0; i < n; ++i) {
@@ -184,7 +184,7 @@ model::Drive Runs::from(const Moment& moment, double start) const {
     return drive;
 }
 
-motion::Run Runs::run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+motion::Run Runs::run(const FullState& from, double start, double end, const motion::Grid& rows, bool dense,
                       const std::optional<model::WantedEvent>& section) {
     model::Drive drive = this->from(from, start);
     if (section) drive.events.push_back(*section);
@@ -241,7 +241,7 @@ motion::Run Runs::run(const model::Drive& drive, double start, double end, const
     return result;
 }
 
-Moment Runs::at_stop(const motion::Run& run) {
+FullState Runs::at_stop(const motion::Run& run) {
     return {vector_of(run.left->carry->y), HeldMode{run.left->carry->mode, run.left->carry->controllers}};
 }
 
@@ -317,11 +317,11 @@ VectorXd Returns::place(const VectorXd& y) const {
     return chart_.measured(y).cwiseQuotient(units_)(own_);
 }
 
-Moment Returns::moment(const VectorXd& place, const std::optional<HeldMode>& mode) const {
+FullState Returns::full_state(const VectorXd& place, const std::optional<HeldMode>& mode) const {
     VectorXd x = chart_.measured(there_);
     for (std::size_t k = 0; k < own_.size(); ++k) x[own_[k]] = place[static_cast<Index>(k)] * units_[own_[k]];
     if (section_) x[section_->measured] = section_->place;
-    Moment moment{chart_.state(x, there_), mode};
+    FullState moment{chart_.state(x, there_), mode};
     for (const model::Joint& joint : runs_.system().joints) {
         double& theta = moment.y[static_cast<Index>(joint.first())];
         if (joint.walls && joint.of.size() == 1) theta = std::clamp(theta, joint.walls->lower, joint.walls->upper);
@@ -331,11 +331,11 @@ Moment Returns::moment(const VectorXd& place, const std::optional<HeldMode>& mod
 
 Returns::Return Returns::operator()(const VectorXd& from, const std::optional<HeldMode>& mode, int returns) {
     Return sum{.to = from, .finished = true, .mode = mode};
-    for (int i = 0; i < returns && sum.finished; ++i) once(moment(sum.to, sum.mode), sum);
+    for (int i = 0; i < returns && sum.finished; ++i) once(full_state(sum.to, sum.mode), sum);
     return sum;
 }
 
-Returns::Return Returns::arrival(const Moment& from) {
+Returns::Return Returns::arrival(const FullState& from) {
     Return sum{.to = {}, .finished = true};
     once(from, sum);
     return sum;
@@ -392,7 +392,7 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
     return found;
 }
 
-void Returns::once(const Moment& from, Return& sum) {
+void Returns::once(const FullState& from, Return& sum) {
     const motion::Run run = runs_.run(from, start_, start_ + length_, motion::Grid::none(), false, passage_);
     sum.outcome = run.outcome;
     sum.finished = section_ ? run.outcome == model::Outcome::stopped : model::is_whole(run.outcome);
@@ -401,7 +401,7 @@ void Returns::once(const Moment& from, Return& sum) {
     for (const model::Event& e : run.events) {
         if (e.kind != model::EventKind::user) sum.events.emplace_back(e.kind, e.where);
     }
-    Moment at = Runs::at_stop(run);
+    FullState at = Runs::at_stop(run);
     sum.mode = sign_ < 0 ? opposite(std::move(*at.mode)) : std::move(at.mode);
     sum.to = sign_ * place(at.y);
     sum.finished = sum.to.allFinite();

@@ -16,7 +16,7 @@
 namespace dinal::analysis {
 
 /// The complete state: all of y and the mode; without a mode, it follows from y.
-struct Moment {
+struct FullState {
     Eigen::VectorXd y;
     std::optional<HeldMode> mode = {};
 };
@@ -30,15 +30,15 @@ public:
     [[nodiscard]] const model::System& system() const { return *question_.system; }
     [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
     [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
-    [[nodiscard]] Moment first() const;
+    [[nodiscard]] FullState first() const;
     /// The drive of a run that begins at this moment and time.
-    [[nodiscard]] model::Drive from(const Moment& moment, double start) const;
-    [[nodiscard]] motion::Run run(const Moment& from, double start, double end, const motion::Grid& rows, bool dense,
+    [[nodiscard]] model::Drive from(const FullState& moment, double start) const;
+    [[nodiscard]] motion::Run run(const FullState& from, double start, double end, const motion::Grid& rows, bool dense,
                                   const std::optional<model::WantedEvent>& section = {});
     /// Continues another run with the memory of its controllers and delays; an empty run means from the start.
     [[nodiscard]] motion::Run go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
                                     const std::optional<model::WantedEvent>& section = {});
-    [[nodiscard]] static Moment at_stop(const motion::Run& run);
+    [[nodiscard]] static FullState at_stop(const motion::Run& run);
     /// The longest natural period of a body on the stiffness around it; 0 without stiffness.
     [[nodiscard]] double natural_period() const;
     /// The directions in which a moment may be disturbed without leaving its mode: orthonormal columns.
@@ -95,10 +95,10 @@ public:
             Eigen::VectorXd units, Eigen::VectorXd there);
 
     [[nodiscard]] Eigen::VectorXd place(const Eigen::VectorXd& y) const;
-    [[nodiscard]] Moment moment(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
+    [[nodiscard]] FullState full_state(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     /// The first return from a moment that need not be on the section.
-    [[nodiscard]] Return arrival(const Moment& from);
+    [[nodiscard]] Return arrival(const FullState& from);
     /// If the motions on both sides of a difference have different events, order 4 reduces its step; empty if that does
     /// not help and the slopes differ.
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
@@ -110,7 +110,7 @@ public:
     [[nodiscard]] const std::vector<Eigen::Index>& own() const { return own_; }
 
 private:
-    void once(const Moment& from, Return& sum);
+    void once(const FullState& from, Return& sum);
 
     Runs& runs_;
     const Chart& chart_;

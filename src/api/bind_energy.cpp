@@ -78,7 +78,7 @@ lua::Vector times(const RunEnergy& energy) {
 
 using lua::NamedNumbers;
 
-void add_balance(NamedNumbers& numbers, const analysis::Balance& balance, bool part) {
+void add_balance(NamedNumbers& numbers, const analysis::EnergyBalance& balance, bool part) {
     const motion::Work& work = balance.work;
     numbers.insert(numbers.end(), {{"input", work.input},
                                    {"kinetic", balance.change.kinetic},
@@ -151,7 +151,7 @@ std::string text_of_rig(const RunEnergy& energy) {
     for (const model::Joint& joint : joints) width = std::max(width, joint.name.size());
     text += fmt::format("  {:<{}}{:>13}{:>13}{:>13}{:>13}{:>13}\n", "", width, "input", "kinetic", "spring", "viscous",
                         "dry");
-    const auto line = [&](const std::string& name, const analysis::Balance& own) {
+    const auto line = [&](const std::string& name, const analysis::EnergyBalance& own) {
         text += fmt::format("  {:<{}}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}{:>13.6g}\n", name, width,
                             shown(own.work.input), shown(own.change.kinetic), shown(own.change.spring),
                             shown(own.work.viscous), shown(own.work.dry));

@@ -36,7 +36,7 @@ LoneContact::LoneContact(const Problem& problem, std::vector<model::Event>* even
     }
 }
 
-bool LoneContact::creep(const Moment& now) {
+bool LoneContact::creep(const Standstill& now) {
     if (feedback_ || system_.has_remainder() || passes() || motion_ == model::Motion::stuck) return false;
     const double pull = std::fma(-system_.stiffness(), now.theta, now.M);
     const auto within = contact::creeps_within(pull, motion_, balance(), system_.holding(motion_), torques(now));
@@ -47,7 +47,7 @@ bool LoneContact::creep(const Moment& now) {
     return true;
 }
 
-bool LoneContact::for_good(const Moment& now) const {
+bool LoneContact::for_good(const Standstill& now) const {
     if (!stuck()) return false;
     if (phase_ != Phase::creeping && model::cannot_break_away(system_, most_M_, now.theta)) return true;
     return constant_from_ <= now.t && pulled(now.M, now.theta) == model::Motion::stuck;
@@ -67,7 +67,7 @@ bool LoneContact::jumps(double t, double theta) const {
     return std::fabs(above - below) > rounding * torques;
 }
 
-double LoneContact::place_at_stop(const Moment& now) const {
+double LoneContact::place_at_stop(const Standstill& now) const {
     const double k = system_.stiffness();
     if (at_start(now.t) || k == 0 || feedback_ || system_.has_spring()) return now.theta;
     const model::Pull pull = pull_of(now.M, now.theta);
@@ -75,7 +75,7 @@ double LoneContact::place_at_stop(const Moment& now) const {
     return contact::place_at_limit(pull, system_.holding(pull.towards), k, now.M, now.theta, size);
 }
 
-bool LoneContact::decide(const Moment& now) {
+bool LoneContact::decide(const Standstill& now) {
     const model::Motion before = motion_;
     torques_before_ = torques(now);
     const auto [way, told, creeps] = contact::decide({.slid = before}, pull_of(now.M, now.theta));
@@ -90,7 +90,7 @@ bool LoneContact::decide(const Moment& now) {
     return goes_on_after(now.t);
 }
 
-bool LoneContact::release(const Moment& now, model::Motion towards) {
+bool LoneContact::release(const Standstill& now, model::Motion towards) {
     const model::Motion crept = phase_ == Phase::creeping ? motion_ : model::Motion::stuck;
     const auto [way, told, creeps] =
         contact::decide({.held = crept == model::Motion::stuck, .creeps = crept}, {model::never, towards});
@@ -108,14 +108,14 @@ bool LoneContact::release(const Moment& now, model::Motion towards) {
     return goes_on_after(now.t);
 }
 
-void LoneContact::stick(const Moment& now) {
+void LoneContact::stick(const Standstill& now) {
     record_event(model::EventKind::stick, now);
     came_ = motion_, M_stuck_ = now.M;
     motion_ = model::Motion::stuck;
     phase_ = Phase::stuck;
 }
 
-bool LoneContact::failed_to_leave(const Moment& now) {
+bool LoneContact::failed_to_leave(const Standstill& now) {
     if (last_event_time() == now.t) {
         model::Event& last = events_->back();
         if (last.kind == model::EventKind::slip) {
@@ -138,7 +138,7 @@ void LoneContact::go_on() {
     if (phase_ == Phase::held) phase_ = Phase::stuck;
 }
 
-void LoneContact::turned(const Moment& now) {
+void LoneContact::turned(const Standstill& now) {
     motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
     record_event(model::EventKind::turn, now);
 }
@@ -156,7 +156,7 @@ void LoneContact::forget_chatter() {
     }
 }
 
-void LoneContact::record_event(model::EventKind kind, const Moment& now) {
+void LoneContact::record_event(model::EventKind kind, const Standstill& now) {
     if (events_ != nullptr) events_->push_back({now.t, kind, now.theta, now.M});
 }
 

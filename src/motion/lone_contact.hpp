@@ -24,7 +24,7 @@ public:
         creeping,  ///< slower than rounding, yet sliding: friction balances M and the spring
     };
     /// The mass at velocity zero. M is its value for a mass at rest, from the right at a jump.
-    struct Moment {
+    struct Standstill {
         double t, theta, M;
     };
 
@@ -56,7 +56,7 @@ public:
     /// The excess of M over the limit; positive exactly if the law releases the mass.
     [[nodiscard]] double excess(double M, double theta) const { return pull_of(M, theta).beyond; }
     /// Returns whether M can never move the mass again, because M is constant or never large enough.
-    [[nodiscard]] bool for_good(const Moment& now) const;
+    [[nodiscard]] bool for_good(const Standstill& now) const;
     /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
     /// in the direction of motion.
     [[nodiscard]] model::State on_side_of_motion(const model::State& y) const;
@@ -71,29 +71,29 @@ public:
 
     /// The angle of a mass that has stopped: theta, or if that exceeds the limit of sticking by no more than
     /// accumulated rounding, the angle at the limit.
-    [[nodiscard]] double place_at_stop(const Moment& now) const;
+    [[nodiscard]] double place_at_stop(const Standstill& now) const;
 
     /// Reports that the velocity has reached zero.
     void arrive() { phase_ = Phase::arrived; }
     /// Reports that the velocity is below rounding. Returns true, and creeps, if sliding friction alone balances M and
     /// the spring while breakaway friction is larger: such a mass slows down for ever.
-    bool creep(const Moment& now);
+    bool creep(const Standstill& now);
 
     // The following functions return false after too many decisions in a row (chatter).
 
     /// Decides after arrive(), and records the event.
-    bool decide(const Moment& now);
+    bool decide(const Standstill& now);
     /// Leaves a stick or a creep: M has passed the limit of this side.
-    bool release(const Moment& now, model::Motion towards);
+    bool release(const Standstill& now, model::Motion towards);
     /// Returns to sticking after a release without motion: M only touched the limit.
-    bool failed_to_leave(const Moment& now);
+    bool failed_to_leave(const Standstill& now);
 
     /// Reports that time has passed, in motion or at rest.
     void go_on();
     /// Without dry friction: sets the direction, without an event.
     void set_direction(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: reverses, and records the turn.
-    void turned(const Moment& now);
+    void turned(const Standstill& now);
     /// Ends the run; returns whether the mass is at rest.
     bool finish();
     /// Ends a run of endless decisions: removes their events except the first.
@@ -117,7 +117,7 @@ public:
 
 private:
     [[nodiscard]] bool at_start(double t) const { return t <= start_; }
-    [[nodiscard]] double torques(const Moment& now) const {
+    [[nodiscard]] double torques(const Standstill& now) const {
         return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
     }
     /// The friction torque of a creeping mass.
@@ -126,8 +126,8 @@ private:
         if (phase_ != Phase::creeping) return model::pull_at_rest(system_, M, theta);
         return contact::pull_on_creep(std::fma(-system_.stiffness(), theta, M), motion_, balance(), apart_);
     }
-    void stick(const Moment& now);
-    void record_event(model::EventKind kind, const Moment& now);
+    void stick(const Standstill& now);
+    void record_event(model::EventKind kind, const Standstill& now);
     bool goes_on_after(double t);
 
     model::Lowered system_;
@@ -143,7 +143,7 @@ private:
     model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
     double M_stuck_ = 0;                         // and M then
     double torques_before_;                      // sum of torques at the last stop
-    Moment crept_{};                             // when it began to creep
+    Standstill crept_{};                         // when it began to creep
     double apart_ = 0;                           // tolerance of M around the balance of a creep
     bool began_stuck_ = false;
     double last_ = -model::never;  // time of the last decision

@@ -32,10 +32,10 @@ void WalkedCurve::make_table() {
     sum_.omega.resize(sum_.sines), sum_.rate.resize(sum_.rates);
     table_.clear();
     for (const Resonance& resonance : sum_.resonances) table_.mu.push_back(resonance.mu);
-    for (Moment* moment : {&start_, &first_, &second_, &other_}) {
-        moment->sines.resize(sum_.sines);
-        moment->amounts.resize(sum_.rates);
-        moment->resonances.resize(sum_.resonances.size());
+    for (PartValues* values : {&start_, &first_, &second_, &other_}) {
+        values->sines.resize(sum_.sines);
+        values->amounts.resize(sum_.rates);
+        values->resonances.resize(sum_.resonances.size());
     }
     std::fill(start_.resonances.begin(), start_.resonances.end(), std::array<Complex, 2>{0, 1});
     fastest_ = free_.fastest();
@@ -124,7 +124,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
 }
 
 /// Advances the rarer parts: powers, exponentials and resonances.
-void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const {
+void WalkedCurve::turn_others(const PartValues& from, const Turn& by, PartValues& to, double place, Value& y) const {
     const Value sum = powers(place);
     y.f += sum.f, y.slope += sum.slope;
     const double* growth = table_.growth_rows.data() + by.row * sum_.rates;
@@ -147,7 +147,7 @@ void WalkedCurve::turn_others(const Moment& from, const Turn& by, Moment& to, do
 }
 
 const WalkedCurve::Jet& WalkedCurve::derive(const Value& y) {
-    const Moment& asked = *asked_.moment;
+    const PartValues& asked = *asked_.values;
     double second = 0, third = 0;
     for (std::size_t j = 0; j < sum_.sines; ++j) {
         const Complex z = asked.sines[j];
@@ -167,7 +167,7 @@ const WalkedCurve::Jet& WalkedCurve::derive(const Value& y) {
 }
 
 const WalkedCurve::Jet& WalkedCurve::further_jet() {
-    const Moment& asked = *asked_.moment;
+    const PartValues& asked = *asked_.values;
     constexpr std::size_t first = 4;
     for (std::size_t i = first; i <= jet_order; ++i) asked_.jet[i] = 0;
     for (std::size_t j = 0; j < sum_.sines; ++j) {
@@ -192,7 +192,7 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
 
 /// Computes the derivatives of the rarer parts from order `from` to `to`.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
-    const Moment& asked = *asked_.moment;
+    const PartValues& asked = *asked_.values;
     Jet more{};
     for (std::size_t j = 0; j < sum_.rates; ++j) {
         double f = sum_.rate[j] * asked.amounts[j];
@@ -224,7 +224,7 @@ void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
 }
 
 double WalkedCurve::way() const {
-    const Moment& asked = *asked_.moment;
+    const PartValues& asked = *asked_.values;
     double sum = 0;
     for (std::size_t i = sum_.way_powers.size(); i-- > 0;) sum = sum * asked_.place + sum_.way_powers[i];
     for (std::size_t j = 0; j < sum_.sines; ++j) sum -= asked.sines[j].real() / sum_.omega[j];

@@ -67,7 +67,7 @@ public:
         asked_.set(*next_, next_place_);
         return derive(there_);
     }
-    [[nodiscard]] bool asked_ahead() const { return asked_.moment != &other_; }
+    [[nodiscard]] bool asked_ahead() const { return asked_.values != &other_; }
     /// Moves the point of way() by this much from the last point of jet().
     void step_aside(double further) { asked_.aside = further; }
     /// For a velocity: its integral from the start to the last point of at() or jet().
@@ -132,7 +132,7 @@ private:
     }();
 
     /// The value of each part at some time.
-    struct Moment {
+    struct PartValues {
         std::vector<Complex> sines;
         std::vector<double> amounts;
         std::vector<std::array<Complex, 2>> resonances;  // the divided difference, and exp(mu tau)
@@ -193,13 +193,13 @@ private:
     };
     /// The last point of at() or jet().
     struct Asked {
-        const Moment* moment;
+        const PartValues* values;
         double place = 0;
         Jet jet{};  // derivatives there, as far as they were computed
         std::size_t jet_size = 0;
         double aside = 0;
 
-        void set(const Moment& there, double tau) { aside = 0, moment = &there, place = tau; }
+        void set(const PartValues& there, double tau) { aside = 0, values = &there, place = tau; }
         /// The integral from there to the point aside.
         [[nodiscard]] double further_way() const;
     };
@@ -223,7 +223,7 @@ private:
         return table_.turns[slot];
     }
     /// Advances every part and sums them.
-    Value turn(const Moment& from, const Turn& by, Moment& to, double place) const {
+    Value turn(const PartValues& from, const Turn& by, PartValues& to, double place) const {
         Value y;
         const Complex *factor = table_.sine_rows.data() + by.row * sum_.sines, *part = from.sines.data();
         const double* omega = sum_.omega.data();
@@ -244,7 +244,7 @@ private:
         if (!only_swings_) turn_others(from, by, to, place, y);
         return y;
     }
-    void turn_others(const Moment& from, const Turn& by, Moment& to, double place, Value& y) const;
+    void turn_others(const PartValues& from, const Turn& by, PartValues& to, double place, Value& y) const;
     [[nodiscard]] Value powers(double tau) const;
     [[nodiscard]] double growing_bound(double until) const;
     const Jet& derive(const Value& y);
@@ -257,9 +257,9 @@ private:
     double sines_fourth_ = 0, sines_size_ = 0;
     Table table_;
 
-    Moment start_, first_, second_, other_;  // two alternate for the walk, other_ is for at()
-    const Moment* now_ = &start_;
-    Moment* next_ = &first_;
+    PartValues start_, first_, second_, other_;  // two alternate for the walk, other_ is for at()
+    const PartValues* now_ = &start_;
+    PartValues* next_ = &first_;
     double place_ = 0, next_place_ = 0;
     Value here_, there_;
     Asked asked_{&other_};

@@ -77,7 +77,7 @@ bool ExactEngine::advance() {
     if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!contact_.stuck()) return move();
-    return contact_.for_good(moment()) ? rest_until_end() : stay();
+    return contact_.for_good(standstill()) ? rest_until_end() : stay();
 }
 
 /// Writes the remaining rows of a mass at rest, in portions if there are many.
@@ -134,7 +134,7 @@ bool ExactEngine::move() {
     std::optional<double> zero;
     if (!contact_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return contact_.creep(moment()) || go_on(contact_.failed_to_leave(moment()));
+        if (leaving && !left) return contact_.creep(standstill()) || go_on(contact_.failed_to_leave(standstill()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
@@ -235,7 +235,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
         const model::Motion way = model::motion_of(first != 0 ? first : second != 0 ? second : third);
         if (way == model::Motion::stuck) return;
         const bool recorded = contact_.motion() == model::Motion::stuck || contact_.last_event_time() == clock_.hi;
-        if (way != contact_.motion()) recorded ? contact_.set_direction(way) : contact_.turned(moment());
+        if (way != contact_.motion()) recorded ? contact_.set_direction(way) : contact_.turned(standstill());
         if (!get_under_way(exit, model::sign_of(way), start_pull, length)) return;
     } else if (contact_.motion() == model::Motion::stuck) {
         contact_.set_direction(model::motion_of(y_.velocity));

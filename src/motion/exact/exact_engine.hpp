@@ -39,11 +39,12 @@ private:
     bool move();
     bool rest_until_end();
     void finish();
-    [[nodiscard]] LoneContact::Moment moment() const { return {clock_.hi, y_.theta, M_}; }
+    [[nodiscard]] LoneContact::Standstill standstill() const { return {clock_.hi, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
-        if (const double theta = contact_.place_at_stop(moment()); theta != y_.theta) y_.theta = theta, theta_rest_ = 0;
-        return contact_.decide(moment());
+        if (const double theta = contact_.place_at_stop(standstill()); theta != y_.theta)
+            y_.theta = theta, theta_rest_ = 0;
+        return contact_.decide(standstill());
     }
     /// Continues after a decision at velocity zero; `sane` is false after too many standstills in a row.
     bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }

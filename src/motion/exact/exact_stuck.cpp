@@ -31,7 +31,7 @@ bool ExactEngine::stay() {
     const bool held = contact_.phase() == LoneContact::Phase::held;
     if (!held) {
         const model::Motion towards = contact_.pulled(M_, y_.theta);
-        if (towards != model::Motion::stuck) return go_on(contact_.release(moment(), towards));
+        if (towards != model::Motion::stuck) return go_on(contact_.release(standstill(), towards));
     }
     make_load();
     const double bound = load_.fourth_bound(length);
@@ -95,7 +95,7 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
     if (crosses) {
         pull_at_release_ = model::sign_of(towards) * contact_.limit(towards) - system_.braking(towards);
     }
-    const bool sane = contact_.release(moment(), towards);
+    const bool sane = contact_.release(standstill(), towards);
     if (contact_.stuck()) pull_at_release_.reset();  // the creep has ended in rest
     return go_on(sane);
 }

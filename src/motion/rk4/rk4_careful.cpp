@@ -119,10 +119,10 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
         if (y_.velocity != 0) {  // so close to zero that t + zero rounds to t
             y_.velocity = 0;
             M_ = contact_.M_at_rest(t_, y_.theta, M_);
-            if (!contact_.creep(moment())) contact_.arrive();
+            if (!contact_.creep(standstill())) contact_.arrive();
             return finite();
         }
-        if (!contact_.creep(moment()) && !go_on(contact_.failed_to_leave(moment()))) return false;
+        if (!contact_.creep(standstill()) && !go_on(contact_.failed_to_leave(standstill()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
         contact_.go_on();
@@ -138,7 +138,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
     // no error by more than 5 %.
     y_ = {s.y.theta, 0};
     t_ = t, M_ = contact_.M_at_rest(t, y_.theta, s.M);
-    if (!contact_.creep(moment())) contact_.arrive();
+    if (!contact_.creep(standstill())) contact_.arrive();
     return finite();
 }
 
@@ -154,7 +154,7 @@ bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
         if (!release) return finite();
         next = contact_.pulled(M_, y_.theta);
     }
-    return go_on(contact_.release(moment(), next));
+    return go_on(contact_.release(standstill(), next));
 }
 
 std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Sampled* known,

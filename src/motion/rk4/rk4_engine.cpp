@@ -53,7 +53,7 @@ model::Outcome Rk4Engine::run(const Rk4Checkpoint& from, std::size_t last_step) 
             outcome_ = model::Outcome::interrupted;
             break;
         }
-        if (contact_.for_good(moment())) {
+        if (contact_.for_good(standstill())) {
             rows_standing_until(model::never);  // nothing can move it again
             t_ = window_.end;
             break;

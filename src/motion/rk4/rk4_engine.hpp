@@ -90,12 +90,12 @@ private:
             failed_ = true;
         }
     }
-    [[nodiscard]] LoneContact::Moment moment() const { return {t_, y_.theta, M_}; }
+    [[nodiscard]] LoneContact::Standstill standstill() const { return {t_, y_.theta, M_}; }
     void stop_at_end();
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
-        y_.theta = contact_.place_at_stop(moment());
-        return contact_.decide(moment());
+        y_.theta = contact_.place_at_stop(standstill());
+        return contact_.decide(standstill());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
     bool go_on(bool sane) {

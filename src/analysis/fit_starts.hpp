@@ -1,0 +1,62 @@
+// The record of an identification, and the values from which its search starts.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "analysis/identification.hpp"
+#include "analysis/turning_points.hpp"
+
+namespace dinal::analysis {
+
+/// A value for each unknown, fitted or given.
+using Parameters = std::array<double, unknown_count>;
+
+inline double& at(Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+inline double at(const Parameters& p, Unknown which) {
+    return p[static_cast<std::size_t>(which)];
+}
+
+/// The measured angles, with properties that need no model.
+struct MeasuredAngles {
+    explicit MeasuredAngles(const IdentifyQuestion& question);
+
+    /// Returns whether the last samples are equal to within noise.
+    [[nodiscard]] bool ends_at_rest() const;
+    /// The natural frequency of one full swing per sample.
+    [[nodiscard]] double highest_omega0() const;
+
+    Eigen::VectorXd theta;
+    CutOff cut;
+    double range, span, noise;
+    double step;                     ///< resolution of the instrument; 0 if none is visible
+    std::vector<std::size_t> turns;  ///< indices of the turning points
+};
+
+/// Starting values: from the extremes of a free decay, or by the weak form of the driven equation. Given values are
+/// kept.
+class FitStarts {
+public:
+    FitStarts(const IdentifyQuestion& question, const MeasuredAngles& record) : question_(question), record_(record) {}
+
+    [[nodiscard]] std::vector<Parameters> all() const { return question_.M ? forced() : free(); }
+    /// Solves the weak form of the driven equation; falls back on the scales of the record.
+    [[nodiscard]] Parameters weak_form() const;
+    /// Completes the values by the first angles of the record. `dry` is Rd/k, `zero` the offset.
+    [[nodiscard]] Parameters completed(double omega0, double zeta, double dry, double zero) const;
+
+private:
+    [[nodiscard]] std::vector<Parameters> free() const;
+    [[nodiscard]] std::vector<Parameters> forced() const;
+    [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const;
+    void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const;
+
+    const IdentifyQuestion& question_;
+    const MeasuredAngles& record_;
+};
+
+}  // namespace dinal::analysis
