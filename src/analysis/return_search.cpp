@@ -527,7 +527,8 @@ std::optional<VectorXd> ReturnSearch::complete(FullState moment, double start) {
 /// A mass that friction holds a little longer in each period adheres in the limit, which no number of periods reaches.
 std::optional<motion::Run> ReturnSearch::standing_beside(const motion::Run& run, FullState& moment, double start) {
     constexpr double tiny = 1e-8, nearest = 1e-8, farthest = 1e-3;  // relative to the motion before
-    const bool creeps = n() == 1 && question().repeats.period > 0 && !run.events.empty() &&
+    const bool by_numbers = n() == 1 && runs_.system().joints.front().friction.is_of_numbers();
+    const bool creeps = by_numbers && question().repeats.period > 0 && !run.events.empty() &&
                         reach_of_rows(run, chart_).range()[0] <= tiny * farthest_;
     for (double by = nearest; creeps && by < farthest; by *= 10) {
         for (const double aside : {-by, by}) {
