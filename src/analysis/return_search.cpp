@@ -19,6 +19,8 @@ using Eigen::VectorXd;
 
 namespace {
 
+constexpr double rows_of_period = 400;
+
 bool has_acts(const model::Drive& drive) {
     return std::any_of(drive.events.begin(), drive.events.end(),
                        [](const model::WantedEvent& event) { return event.act != nullptr; });
@@ -73,7 +75,9 @@ private:
 
     /// Completes the answer for a motion of facts_.period that begins at this moment. Returns its state half a period
     /// later; empty if it cannot be run, and the search continues.
-    std::optional<VectorXd> complete(const FullState& moment, double start);
+    std::optional<VectorXd> complete(FullState moment, double start);
+    /// The run of a period that does not move at all, from a place beside this moment; empty if there is none.
+    std::optional<motion::Run> standing_beside(const motion::Run& run, FullState& moment, double start);
     /// The same for a run that has settled up to its end and repeats after facts_.period.
     std::optional<VectorXd> complete_settled(const motion::Run& so_far);
     std::optional<VectorXd> complete_period(const FullState& from, motion::Run run, double period);
@@ -103,6 +107,7 @@ private:
     std::optional<Returns> returns_;  // from period to period
     double start_ = 0;                // of these periods
     double range_ = 0;                // of angles in the last measured period
+    double farthest_ = 0;             // greatest range of angles in a measured period
     double largest_ = 0;              // greatest angle or velocity of a settling run
 };
 
@@ -168,6 +173,7 @@ std::optional<Map::Return> ReturnSearch::measured_at(const FullState& moment) {
     const FullState now = Runs::at_stop(*run);
     returns_.emplace(runs_, chart_, start_, question().repeats.period, std::nullopt, units_of(reach), now.y);
     range_ = greatest(reach, n());
+    farthest_ = std::max(farthest_, range_);
     return Map::Return{.to = returns_->place(now.y), .finished = true, .mode = now.mode};
 }
 
@@ -509,19 +515,39 @@ SteadyMotion ReturnSearch::found() {
 
 // ---- the answer
 
-std::optional<VectorXd> ReturnSearch::complete(const FullState& moment, double start) {
+std::optional<VectorXd> ReturnSearch::complete(FullState moment, double start) {
     const double period = facts_.period;
-    constexpr double rows = 400;
-    motion::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows), true);
+    motion::Run run = runs_.run(moment, start, start + period, motion::Grid::every(period / rows_of_period), true);
     if (!model::is_whole(run.outcome)) return {};
+    if (auto still = standing_beside(run, moment, start)) run = std::move(*still);
     facts_.by_returns.drive = std::make_shared<const model::Drive>(runs_.from(moment, start));
     return complete_period(moment, std::move(run), period);
 }
 
+/// A mass that friction holds a little longer in each period adheres in the limit, which no number of periods reaches.
+std::optional<motion::Run> ReturnSearch::standing_beside(const motion::Run& run, FullState& moment, double start) {
+    constexpr double tiny = 1e-8, nearest = 1e-8, farthest = 1e-3;  // relative to the motion before
+    const bool by_numbers = n() == 1 && runs_.system().joints.front().friction.is_of_numbers();
+    const bool creeps = by_numbers && question().repeats.period > 0 && !run.events.empty() &&
+                        reach_of_rows(run, chart_).range()[0] <= tiny * farthest_;
+    for (double by = nearest; creeps && by < farthest; by *= 10) {
+        for (const double aside : {-by, by}) {
+            FullState beside{moment.y};
+            beside.y[0] += aside * farthest_, beside.y[1] = 0;
+            const double end = start + facts_.period;
+            motion::Run still =
+                runs_.run(beside, start, end, motion::Grid::every(facts_.period / rows_of_period), true);
+            if (!still.events.empty() || still.motion_at_stop != model::Motion::stuck) continue;
+            moment = std::move(beside);
+            return still;
+        }
+    }
+    return {};
+}
+
 std::optional<VectorXd> ReturnSearch::complete_settled(const motion::Run& so_far) {
     const double period = facts_.period, t = so_far.t_stop;
-    constexpr double rows = 400;
-    motion::Run run = runs_.go_on(so_far, t, t + period, motion::Grid::every(period / rows));
+    motion::Run run = runs_.go_on(so_far, t, t + period, motion::Grid::every(period / rows_of_period));
     if (!model::is_whole(run.outcome)) return {};
     return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }

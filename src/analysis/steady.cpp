@@ -64,7 +64,8 @@ SteadyMotion motion_of(const SteadyQuestion& question, bool near, const motion::
 /// The motion of a free block may repeat its velocity while the angle advances, which is not growth.
 SteadyMotion motion_or_advance(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
     SteadyMotion motion = motion_of(question, near, monitor);
-    if (motion.status != SteadyStatus::grows || !is_free_block(question)) return motion;
+    const bool drifts = motion.status == SteadyStatus::grows || motion.status == SteadyStatus::none;
+    if (!drifts || !is_free_block(question)) return motion;
     SteadyMotion advance = motion_of(advancing(question), near, monitor);
     return advance.is_found() ? advance : motion;
 }

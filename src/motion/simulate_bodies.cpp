@@ -13,6 +13,7 @@
 #include "motion/engine/run.hpp"
 #include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
+#include "motion/stillness.hpp"
 
 namespace dinal::motion {
 
@@ -135,6 +136,9 @@ Run completed(const model::System& system, const model::Drive& drive, Run run) {
     std::optional<model::Oscillator> seen;
     if (!system.named) seen = oscillator_if_dense(system, run, 0);
     engine::complete(run, system, drive, seen);
+    if (system.is_alone()) {
+        if (const auto alone = model::oscillator_at(system, 0)) settle(run, *alone, drive);
+    }
     if (run.rough) run.rough->other_integrators = false;
     return run;
 }

@@ -440,4 +440,16 @@ test("a body or link may be called like a field of one body, but not like a meth
     raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
 end)
 
+test("a body that M cannot move again is at rest, also with a name, and with a state that nothing asks", function()
+    local M = excitation.harmonic { amplitude = 0.5, omega = 1 }
+    local own = { I = 1, k = 1, friction = friction.stribeck { Rd = 1, Re = 1.6, speed = 0.5 } }
+    local alone = system(own):simulate { M = M, theta0 = 0.5, t_end = 10 }
+    local named = system { bodies = { a = own } }:simulate { M = { a = M }, theta0 = { a = 0.5 }, t_end = 10 }
+    equal(alone.outcome, "at rest")
+    equal(named.outcome, "at rest")
+    local clock = { clock = { start = 0, rate = function() return 1 end } }
+    local rig = system { bodies = { a = own, b = { I = 1, Rd = 1 } } }
+    equal(rig:simulate { M = { a = 0.5 }, theta0 = { a = 0.5 }, t_end = 10, states = clock }.outcome, "at rest")
+end)
+
 finish()

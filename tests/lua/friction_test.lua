@@ -211,4 +211,25 @@ test("uneven breakaway holds alike under exact and spectral, with a table of M a
     end
 end)
 
+test("friction that falls steeply with the speed stops a fast mass where its decay says", function()
+    -- Beyond speed 0, where stretches and steps look for the stop, such laws would grow without bound.
+    local theta0, k, Rd = 1000, 100, 0.6
+    local turn = math.pi / math.sqrt(k)
+    for _, law in ipairs {
+        function(v) return Rd + 0.6 * math.exp(-v / 0.5) end,
+        friction.law(function(v) return Rd + 0.6 * math.exp(-v / 0.5) end),
+        friction.stribeck { Rd = Rd, Re = 1.2, speed = 0.5, shape = 1 },
+        friction.stribeck { Rd = Rd, Re = 1.2, speed = 0.5, shape = 3 },
+    } do
+        for _, method in ipairs { integrator.spectral {}, integrator.dopri5 { tolerance = 1e-9 }, integrator.rk4 { h = turn / 3000 } } do
+            local run = system { I = 1, k = k, friction = law }:simulate { theta0 = theta0, t_end = 2, integrator = method }
+            equal(#run.events, 6)
+            for i, event in ipairs(run.events) do
+                near(event.t, i * turn, 1e-6)
+                near(math.abs(event.theta), theta0 - 2 * i * Rd / k, 1e-3)
+            end
+        end
+    end
+end)
+
 finish()

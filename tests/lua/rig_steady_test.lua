@@ -389,6 +389,10 @@ test("a block without a spring that advances evenly is steady, alone and as the 
         equal(alone.amplitude, nil)
         equal(alone:explain(), named:explain())
     end
+    -- Also where a fast start hides the small advance.
+    local saw, block = excitation.sawtooth { amplitude = 0.5, period = 3 }, system { I = 1, k = 0, Rd = 0.2 }
+    equal(block:steady { M = saw, velocity0 = 3 }.status, "steady")
+    near(block:steady { M = saw, velocity0 = 3 }.stuck, block:steady { M = saw }.stuck, 1e-9)
     equal(system { I = 1, k = 0, Rd = 1 }:steady { M = sine(1, 3) + 2 }.status, "grows")
     has(system { I = 1, k = 0, C = 1, Rd = 1 }:steady { M = 3 }:explain(), "It moves at the constant velocity 2.", "no other motion")
     equal(#system { I = 1, k = 0, C = 1, Rd = 1 }:steady { M = 0.3 }.others, 0)

@@ -373,4 +373,24 @@ test("a search begins with the states of the run, and after a step of M is over"
     near(s.rest.lower, 0.375, 1e-6)
 end)
 
+test("a mass that friction holds longer and longer adheres in the limit", function()
+    -- M alone never breaks it away, but from outside of the dead zone it slips towards it by ever smaller steps.
+    local M = excitation.harmonic { amplitude = 0.5, omega = 3 }
+    for _, law in ipairs { friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.3 }, friction.table { speed = { 0, 1 }, torque = { 0.6, 0.3 } } } do
+        for _, C in ipairs { 0, 0.5 } do
+            local own = { I = 1, k = 1, C = C, friction = law }
+            for _, theta0 in ipairs { 0.5, 2 } do
+                local s = system(own):steady { M = M, theta0 = theta0 }
+                local named = system { bodies = { a = own } }:steady { M = { a = M }, theta0 = { a = theta0 } }
+                for _, each in ipairs { s, named.a } do
+                    equal(each.status, "adheres")
+                    equal(each.amplitude, 0.0)
+                    near(each.rest.lower, -0.1, 1e-9)
+                    near(each.rest.upper, 0.1, 1e-9)
+                end
+            end
+        end
+    end
+end)
+
 finish()

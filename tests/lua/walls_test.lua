@@ -190,4 +190,52 @@ test("a body that comes to rest at a wall does not stop the others meanwhile", f
     near(run.b.theta[#run], math.cos(2 * 20), 1e-11)
 end)
 
+test("masses in a row that strike each other without rebound, or a wall, go on together or stand", function()
+    local function play() return { lower = -0.1, upper = 0.5, restitution = 0 } end
+    -- A train that is pushed: it moves as one mass once all play is used up.
+    local wagons = { a = { I = 0.3 }, b = { I = 0.7 }, c = { I = 1.1 } }
+    local train = system { bodies = wagons, links = { l = { "a", "b", walls = play() }, m = { "b", "c", walls = play() } } }
+    for i, M in ipairs { excitation.constant(1), excitation.harmonic { omega = 1 } } do
+        local run = train:simulate { M = { a = M }, t_end = 3, dt = 0.01 }
+        equal(run.status, "end")
+        assert(#run.events < 20)
+        near(run.l.theta[#run], 0.5, 1e-12)
+        near(run.m.theta[#run], 0.5, 1e-12)
+        near(2.1 * run.c.velocity[#run], i == 1 and 3 or 1 - math.cos(3), 1e-12)
+        closes(run)
+    end
+    -- Pressed against a wall at 0.5.
+    local pressed = system { bodies = { a = { I = 0.1 }, b = { I = 0.1, walls = { upper = 0.5, restitution = 0 } } },
+        links = { l = { "a", "b", walls = play() } } }
+    local run = pressed:simulate { M = { a = 1 }, t_end = 3 }
+    equal(run.outcome, "at rest")
+    near(run.a.theta[#run], 1, 1e-12)
+    near(run.b.theta[#run], 0.5, 1e-15)
+    assert(#run.events < 20)
+    closes(run)
+    -- Five balls that touch share the velocity of the first; two with a little rebound end against the wall as well.
+    local balls, contacts, fast = {}, {}, { b1 = 1 }
+    for i = 1, 5 do balls["b" .. i] = { I = 1 } end
+    for i = 1, 4 do contacts["l" .. i] = { "b" .. i, "b" .. i + 1, walls = { upper = 0, restitution = 0 } } end
+    run = system { bodies = balls, links = contacts }:simulate { velocity0 = fast, t_end = 2 }
+    for i = 1, 5 do near(run["b" .. i].theta[#run], 0.4, 1e-12) end
+    closes(run)
+    for _, e in ipairs { { 0, 0.5 }, { 0.5, 0 }, { 0.5, 0.5 } } do
+        local b = { I = 0.1, walls = { upper = 0.5, restitution = e[1] } }
+        run = system { bodies = { a = { I = 0.1 }, b = b }, links = { l = { "a", "b", walls = { upper = 0.5, restitution = e[2] } } } }
+            :simulate { M = { a = 1 }, t_end = 3 }
+        equal(run.outcome, "at rest")
+        closes(run)
+    end
+end)
+
+test("bodies in a row that nothing but their walls pushes go on together under any M", function()
+    local wagons = { a = { I = 0.3 }, b = { I = 0.7 }, c = { I = 1.1 } }
+    local row = system { bodies = wagons, links = { l = { "a", "b", walls = { upper = 0.5 } }, m = { "b", "c", walls = { upper = 0.5 } } } }
+    local run = row:simulate { M = { a = function(t) return 1 + 0.2 * t end }, theta0 = { a = 1, b = 0.5 }, t_end = 3 }
+    near(run.c.theta[#run], (4.5 + 0.9) / 2.1, 1e-12)
+    near(run.m.torque[#run], -1.6 * 1.1 / 2.1, 1e-12)
+    equal(#run.events, 0)
+end)
+
 finish()

@@ -19,7 +19,7 @@ struct Stribeck {
     static constexpr bool depends_on_speed = true;
     [[nodiscard]] double sliding(Motion /*way*/, double v) const {
         if (v == 0) return breakaway;
-        constexpr double farthest = 20;  // limits the exponent below speed 0, where odd powers grow
+        constexpr double farthest = 2;  // limits the exponent below speed 0, where odd powers grow
         const double exponent = speed_ratio_power(v);
         const bool grows = v < 0 && std::fmod(shape, 2) == 1;
         return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(exponent, farthest) : -exponent);

@@ -105,7 +105,8 @@ private:
     };
     [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
     bool hit(std::size_t joint, int wall);
-    void leave_walls();
+    [[nodiscard]] std::vector<char> stop_row(std::size_t joint, int wall, bool fades);
+    void leave_walls(const std::vector<char>& stopped);
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t event, const std::vector<std::size_t>& told);
     void see_flight();

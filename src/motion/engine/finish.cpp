@@ -57,7 +57,7 @@ std::optional<Outcome> Engine::at_rest() {
     }
     if (!still) return {};
     mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.t.hi; });
-    for_good = for_good && mechanics_.states() == 0;
+    for_good = for_good && mechanics_.states() == mechanics_.states_of_user();
     for (const model::WantedEvent& event : problem_.drive.events) for_good = for_good && event.act == nullptr;
     for (const Joint& joint : problem_.system.joints) {
         for_good = for_good && (joint.friction.function == nullptr || joint.friction.holding[0]);

@@ -391,9 +391,9 @@ void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, 
 }
 
 void Flow::judge_joints(const Segment& s, const Mode& mode) {
-    double held = 0;  // torque that rigid joints transmit
+    double held = 0;  // torque that rigid joints and walls transmit
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
-        if (mode.rigid[joint] != 0) held = std::max(held, greatest(s.holding[joint]));
+        if (mode.keeps_place(joint)) held = std::max(held, greatest(s.holding[joint]));
     }
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (is_compared(joint, mode)) {

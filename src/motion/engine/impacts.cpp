@@ -16,6 +16,7 @@ namespace {
 
 // Relative to the pace.
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
+constexpr double faded_impact = 1e-12;  // relative to the fastest impact at the same time
 
 }  // namespace
 
@@ -68,18 +69,21 @@ bool Engine::hit(std::size_t joint, int wall) {
         return goes_on();
     }
     tell(EventKind::impact, joint);
+    const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
+    if (!(now_.t.hi - walls_.instant <= last_bounces * pace)) walls_.fastest = 0;
+    walls_.instant = now_.t.hi, walls_.fastest = std::max(walls_.fastest, before);
+    const bool fades = before > 0 && before < faded_impact * walls_.fastest;
     const Impulses::Thrown thrown = impulses_.along(joint, now_);
     const auto velocity = [&](double relative) { Impulses::apply(thrown, relative, now_); };
     velocity(-wall * e * before);
     conditions_->forget();
-    bool rests = e * before == 0;
+    bool rests = fades || e * before == 0;
     double rest = 0;
     if (!rests) {
         const auto bounces = next_bounces(joint, wall, e * before);
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
         // changes nothing.
-        const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
@@ -94,7 +98,7 @@ bool Engine::hit(std::size_t joint, int wall) {
         conditions_->forget();
         wait(rest);
     }
-    leave_walls();
+    leave_walls(stop_row(joint, wall, fades));
     if (rests) {
         now_.mode.leans[joint] = wall;
         if (now_.rubs(joint)) {
@@ -112,11 +116,31 @@ bool Engine::hit(std::size_t joint, int wall) {
     return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
 }
 
+/// Stops masses in a row at once that would strike each other ever more slowly, endlessly: all that lean after an
+/// impact that `fades`, and without rebound those that are thrown into their walls. Returns the joints that stopped.
+std::vector<char> Engine::stop_row(std::size_t joint, int wall, bool fades) {
+    const auto& joints = problem_.system.joints;
+    std::vector<char> stopped(joints.size(), 0);
+    const bool dead = joints[joint].walls->restitution == 0;
+    bool strikes = fades;
+    for (std::size_t j = 0; j < joints.size(); ++j) {
+        if (j == joint || now_.mode.leans[j] == 0) continue;
+        const double into = now_.mode.leans[j] * mechanics_.velocity(j, now_.y);
+        stopped[j] = fades || (dead && joints[j].walls->restitution == 0 && into >= 0) ? 1 : 0;
+        strikes = strikes || (stopped[j] != 0 && into > 0);
+    }
+    if (!strikes) return {};
+    stopped[joint] = 1;
+    now_.mode.leans[joint] = wall;
+    recorder_->add_jump(now_.t.hi, joint, {.impacts = stop_together(stopped)});
+    return stopped;
+}
+
 /// Makes joints that leaned and were struck leave: away from the wall, or into it, which is another impact.
-void Engine::leave_walls() {
+void Engine::leave_walls(const std::vector<char>& stopped) {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const double v = mechanics_.velocity(j, now_.y);
-        if (now_.mode.leans[j] == 0 || v == 0) continue;
+        if (now_.mode.leans[j] == 0 || v == 0 || (!stopped.empty() && stopped[j] != 0)) continue;
         if (contacts_.of[j].leaned && now_.mode.leans[j] * v < 0) tell(EventKind::slip, j);
         now_.mode.leans[j] = 0, contacts_.of[j].leaned = false, contacts_.of[j].leaves_wall = true;
     }

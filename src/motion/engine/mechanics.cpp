@@ -460,9 +460,14 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
     double torque = 0;
     if (contact.law) {
         const Piecewise& law = *contact.law;
-        const double smooth = speed >= 0 || law.is_held() ? law.value(at, speed) : model::never;
-        // If the law is undefined below speed 0, extrapolate by point reflection at 0.
-        torque = speed >= 0 || std::isfinite(smooth) ? smooth : 2 * law.value(at, 0) - law.value(at, -speed);
+        torque = speed >= 0 || law.is_held() ? law.value(at, speed) : model::never;
+        if (speed < 0) {
+            // If the law is undefined below speed 0, or grows without bound, extrapolate by point reflection at 0.
+            constexpr double far = 4;
+            const double at_zero = law.value(at, 0), mirrored = law.value(at, -speed);
+            const double beside = 2 * at_zero - mirrored;
+            if (!(std::fabs(torque - beside) <= far * (std::fabs(at_zero) + std::fabs(mirrored)))) torque = beside;
+        }
         torque *= friction.law.normal();
     } else if (!own.none()) {
         torque = own.value(at);

@@ -17,6 +17,7 @@ struct Walls {
     /// for each joint: angle of the wall it hit last, and greatest distance from there since
     std::vector<double> origin, reach;
     std::pair<std::size_t, int> last_hit{0, 0};  ///< joint and side of the wall
+    double instant = model::never, fastest = 0;  ///< time of the last impact, and the fastest one at about that time
 
     void struck(std::size_t joint, double place) { origin[joint] = place, reach[joint] = 0; }
     /// Updates the distances from the walls after the motion has advanced.
