@@ -65,7 +65,7 @@ public:
           swings_(analysis::half_cycles(run_)),
           events_(events_of_motion(run_, whole.drive.events)),
           on_base_(!whole.drive.base.components().empty()),
-          on_belt_(!belt_.components().empty()),
+          on_belt_(!belt_.components().empty() && !is_smooth()),
           steady_belt_(belt_.constant_from() <= run_.t_start),
           T0_(time_scale(whole, seen, undisturbed_)),
           constant_from_(excitation_.has_feedback() || on_base_ || on_belt_ || !has_reasons()
@@ -106,6 +106,8 @@ public:
 private:
     [[nodiscard]] bool named() const { return whole_.system.named; }
     [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
+    /// Returns whether nothing rubs on the joint.
+    [[nodiscard]] bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
     /// Returns whether all torques on a standing mass and its friction limit are known.
     [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
     [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
@@ -159,6 +161,7 @@ private:
     }
     void tell_surroundings() {
         if (on_base_ && !several(whole_)) say("{}", base_text);
+        if (!belt_.components().empty() && is_smooth()) say("The belt has no effect, as there is no dry friction.");
         if (!on_belt_) return;
         if (steady_belt_) {
             say("{} rubs on a belt that moves with velocity vb = {:.5g}.", name_or("The mass"),

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "api/classes.hpp"
@@ -128,6 +129,23 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
     return 1;
 }
 
+bool has_column(const files::ReadColumns& content, std::string_view name) {
+    return std::any_of(content.columns.begin(), content.columns.end(),
+                       [name](const files::ReadColumn& column) { return column.name == name; });
+}
+
+/// In a table of t and theta, the number of the first row that is earlier than the one before.
+std::optional<std::size_t> earlier_row(const files::ReadColumns& content) {
+    if (!has_column(content, "theta")) return {};
+    for (const files::ReadColumn& column : content.columns) {
+        const auto end = std::is_sorted_until(column.numbers.begin(), column.numbers.end());
+        if (column.name == "t" && end != column.numbers.end()) {
+            return static_cast<std::size_t>(end - column.numbers.begin()) + 1;
+        }
+    }
+    return {};
+}
+
 /// Pushes data. Comments of run:save declare units; its columns may begin with the names of bodies.
 int push_loaded_data(lua_State* L, files::ReadColumns content) {
     const ColumnUnits in(model::Units::from_file(content.comments));
@@ -138,6 +156,10 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
         data.heading = fmt::format("data: {}; line {} of the file ends in the middle and was left out",
                                    text::counted(rows, "row"), content.cut);
     }
+    if (const auto row = earlier_row(content); row && data.heading.empty()) {
+        data.heading = fmt::format("data: {}; row {} is earlier than the one before: sort = true puts them in order",
+                                   text::counted(content.columns.front().numbers.size(), "row"), *row);
+    }
     for (files::ReadColumn& column : content.columns) {
         if (column.unit.empty()) column.unit = in.of(column.name);
         data.columns.push_back(column_of(std::move(column)));
@@ -145,17 +167,15 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
     return push_data(L, std::move(data));
 }
 
-/// Returns whether the file is a run: it has the comments of run:save, or times and angles of one body, and no gaps.
+/// Returns whether the file is a run: it has the comments of run:save, or times and angles of one body, no gaps, and
+/// times that do not decrease.
 bool is_run(const files::ReadColumns& content) {
     const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
-    const auto has = [&](std::string_view name) {
-        return std::any_of(content.columns.begin(), content.columns.end(),
-                           [name](const files::ReadColumn& column) { return column.name == name; });
-    };
     const bool of_one = std::none_of(content.columns.begin(), content.columns.end(),
                                      [](const auto& column) { return column.name.find('.') != std::string::npos; });
     const bool saved = of_one && !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
-    return (saved || (has("t") && has("theta"))) && std::all_of(content.columns.begin(), content.columns.end(), finite);
+    return (saved || (has_column(content, "t") && has_column(content, "theta"))) &&
+           std::all_of(content.columns.begin(), content.columns.end(), finite) && !earlier_row(content);
 }
 
 /// The units in the line of units; default units without one.
@@ -243,14 +263,13 @@ constexpr lua::Member load_members[] = {
      {"load(file, { OPTIONS }) -> run or data",
       "Reads a file that dinal has written, or any CSV file; the name ends in .csv, .txt, .tsv or .dat (the record "
       "of 1989). A file of run:save gives a run with the same bits, as does a table of numbers with the columns t "
-      "and theta; everything else gives data.\nFields are separated by semicolons, commas, tabs or blanks. Names "
-      "are in the first line (without them they are \"1\", \"2\", ...), lines with # are skipped. Numbers may be "
-      "among the names, t,100,200, if the first is a word and has only numbers below it. A column with anything "
-      "but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the numbers "
-      "has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one everywhere; "
-      "in quotes \"1,5\" is one too. A last line that ends in the middle is left out, which the first line of the data "
-      "tells. "
-      "With other arguments it is Lua's own load.",
+      "(not decreasing) and theta; everything else gives data.\nFields are separated by semicolons, commas, tabs or "
+      "blanks. Names are in the first line (without them they are \"1\", \"2\", ...), lines with # are skipped. "
+      "Numbers may be among the names, t,100,200, if the first is a word and has only numbers below it. A column with "
+      "anything but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the "
+      "numbers has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one "
+      "everywhere; in quotes \"1,5\" is one too, and any number if all fields are in quotes. A last line that ends in "
+      "the middle is left out, which the first line of the data tells. With other arguments it is Lua's own load.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "file = os.tmpname() .. \".csv\"\n"
       "run:save(file)\n"

@@ -251,6 +251,10 @@ std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options,
     options.push("labels");
     const auto labels = lua_type(L, -1) == LUA_TSTRING ? std::nullopt : lua::strings_at(L, -1);
     if (!labels) options.wrong("labels");
+    if (labels->empty() && lua_istable(L, -1)) {
+        lua_pushnil(L);
+        if (lua_next(L, -2) != 0) lua_pop(L, 2), options.wrong("labels");  // { theta = "angle" }
+    }
     if (curves > 0 && labels->size() > curves) {
         options.fail("labels",
                      fmt::format("labels has {} names for {}", labels->size(), text::counted(curves, "column")));

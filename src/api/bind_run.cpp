@@ -1043,7 +1043,11 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
     for (lua_Integer i = 1; i <= static_cast<lua_Integer>(lua_rawlen(L, -1)); ++i) {
         lua_rawgeti(L, -1, i);
         const auto column = column_at(L, -1, result.names(), fmt::format("columns[{}]", i));
-        asked.push_back(all[static_cast<std::size_t>(options.value_or_fail(column))]);
+        const files::NamedColumn& one = all[static_cast<std::size_t>(options.value_or_fail(column))];
+        if (std::any_of(asked.begin(), asked.end(), [&one](const auto& other) { return other.name == one.name; })) {
+            options.fail("columns", fmt::format("columns names '{}' twice; load reads no such file", one.name));
+        }
+        asked.push_back(one);
         lua_pop(L, 1);
     }
     lua_pop(L, 1);

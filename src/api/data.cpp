@@ -97,7 +97,9 @@ std::string heading_of(std::span<const model::Event> events) {
 std::string first_word(const std::vector<std::string>& words) {
     const auto found =
         std::find_if(words.begin(), words.end(), [](const auto& word) { return !files::parse_field(word, false); });
-    return files::shown(found == words.end() ? std::string_view() : std::string_view(*found));
+    if (found != words.end()) return files::shown(*found);
+    const auto number = std::find_if(words.begin(), words.end(), [](const auto& word) { return !word.empty(); });
+    return number == words.end() ? "''" : "the number " + *number + " in double quotes";
 }
 
 std::size_t DataColumn::size() const {

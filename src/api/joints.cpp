@@ -32,46 +32,6 @@ namespace {
 
 namespace engine = motion::engine;
 
-constexpr text::Option inertia_option[] = {
-    {"I", "torque time^2 per rad", text::its_own, text::positive,
-     "moment of inertia; needed unless the body is moved by theta or velocity",
-     text::fills<&model::OscillatorParameters::inertia>},
-};
-constexpr text::Option moved_options[] = {
-    {.name = "theta",
-     .unit = "rad",
-     .meaning = "moves the body to these angles: a number, an excitation or a function of t; the column torque is what "
-                "that takes",
-     .object = "excitation",
-     .wanted = "a number, an excitation or a function of t"},
-    {.name = "velocity",
-     .unit = "rad per time unit",
-     .meaning = "moves the body at this velocity, from theta0 on: a number, an excitation or a function of t",
-     .object = "excitation",
-     .wanted = "a number, an excitation or a function of t"},
-};
-constexpr text::Option joint_options[] = {
-    {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
-     text::fills<&model::OscillatorParameters::stiffness>},
-    model::mechanical_options[2],
-    model::mechanical_options[6],
-    model::mechanical_options[7],
-};
-constexpr auto body_options = text::joined(inertia_option, moved_options, joint_options, friction_options);
-constexpr text::Option link_numbers[] = {
-    {.name = "ratio",
-     .otherwise = "1",
-     .range = text::not_zero,
-     .meaning =
-         "of an ideal gear between two bodies: the angle is that of the first less ratio times that of the second",
-     .wanted = "a number other than 0"},
-    {.name = "rigid",
-     .otherwise = "false",
-     .meaning = "true: the link keeps the angle that it has at the start, and carries whatever torque that takes",
-     .wanted = "true or false"},
-};
-constexpr auto link_options = text::joined(link_numbers, joint_options, friction_options);
-
 }  // namespace
 
 std::vector<std::string> body_names(const model::System& system) {
@@ -169,7 +129,8 @@ model::Joint asked_joint(lua_State* L, const lua::Options& options, double& iner
 
 /// Reads a body, and its joint with the ground, from the table on the top.
 model::Joint read_body(lua_State* L, const std::string& call, model::Body& body) {
-    const text::Call own{call.c_str(), "{ I = 1, k = 4, Rd = 0.3 }", body_options};
+    text::Call own = body_call;
+    own.name = call.c_str();
     const lua::Options options(L, lua_gettop(L), own);
     for (const char* motion : {"theta", "velocity"}) {
         if (!options.has(motion)) continue;
@@ -179,6 +140,9 @@ model::Joint read_body(lua_State* L, const std::string& call, model::Body& body)
     model::Joint joint = asked_joint(L, options, body.inertia);
     if (!options.has("I") && !body.moved) options.missing("I");
     if (body.moved && !options.has("I")) body.inertia = 0, body.moved->without_inertia = true;
+    if (body.moved && joint.walls) {
+        options.fail("walls", "rigid walls cannot stop a body that is moved; leave them out, or give them a stiffness");
+    }
     return joint;
 }
 
@@ -279,7 +243,8 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
                                           name, listed));
     }
     const std::string call = fmt::format("{}: links.{}", options.call(), name);
-    const text::Call own_call{call.c_str(), "{ \"motor\", \"load\", k = 90 }", link_options};
+    text::Call own_call = link_call;
+    own_call.name = call.c_str();
     const lua::Options own(L, lua_gettop(L), own_call);
     double none = 0;
     model::Joint joint = asked_joint(L, own, none);

@@ -37,13 +37,18 @@ struct ResponsePart {
     analysis::ResponseCurve curve = {};
 };
 
-/// A sweep of the frequency of a harmonic M, or of its amplitude at one frequency.
+/// A sweep of the frequency, omega or period of a harmonic M, or of its amplitude at one frequency.
 struct HarmonicSweep {
     model::Oscillator system;
     VariedColumn column;
     double low = 0, high = 0;
     std::optional<double> frequency = {};  ///< none: the frequency is varied
     double amplitude = 1;                  ///< torque, if the frequency is varied
+
+    [[nodiscard]] double frequency_at(double x) const {
+        if (frequency) return *frequency;
+        return column.name == "omega" ? x / (2 * std::numbers::pi) : column.name == "period" ? 1 / x : x;
+    }
 };
 
 namespace {
@@ -76,7 +81,7 @@ Data closed_curve(const HarmonicSweep& sweep, ClosedCurve curve) {
     for (std::size_t i = 0; i < curve_points; ++i) {
         const double x = sweep.low + (sweep.high - sweep.low) * static_cast<double>(i) / (curve_points - 1);
         const double M0 = std::fabs(sweep.frequency ? x : sweep.amplitude);
-        const double r = sweep.frequency.value_or(x) * system.natural_period();
+        const double r = sweep.frequency_at(x) * system.natural_period();
         const auto motion = M0 > 0 ? curve(r, system.damping_ratio(), Rd / M0, Re / M0) : std::nullopt;
         points.push_back(
             {x, motion ? motion->amplitude * M0 / system.stiffness() : no_number, motion ? motion->lag : no_number});
@@ -263,8 +268,9 @@ public:
     [[nodiscard]] bool is_list() const { return !asked_.between; }
     [[nodiscard]] bool doubled() const { return asked_.doubled; }
     [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
-    /// Returns whether closed forms exist for comparison.
-    [[nodiscard]] bool harmonic() const { return !function_ && (over_frequency() || varied_ == "amplitude"); }
+    /// Returns whether M is harmonic, so that closed forms exist for comparison.
+    [[nodiscard]] bool harmonic() const { return !function_; }
+    [[nodiscard]] bool over_amplitude() const { return varied_ == "amplitude"; }
     [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
     [[nodiscard]] double frequency_at(double x) const {
         const auto given = [&](const char* name, const std::optional<double>& option) {
@@ -573,7 +579,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
             .column = over.back(),
             .low = *low,
             .high = *high,
-            .frequency = call.over_frequency() ? std::nullopt : std::optional(call.frequency_at(1)),
+            .frequency = call.over_amplitude() ? std::optional(call.frequency_at(1)) : std::nullopt,
             .amplitude = call.amplitude_at(1)};
         for (DataCompanion& companion : closed_curves(sweep)) data.companions.push_back(std::move(companion));
     }

@@ -75,17 +75,60 @@ inline constexpr text::Option body_numbers[] = {
     model::mechanical_options[2],
 };
 inline constexpr text::Option spring_and_walls[] = {model::mechanical_options[6], model::mechanical_options[7]};
+inline constexpr text::Option inertia_option[] = {
+    {"I", "torque time^2 per rad", text::its_own, text::positive,
+     "moment of inertia; needed unless the body is moved by theta or velocity",
+     text::fills<&model::OscillatorParameters::inertia>},
+};
+inline constexpr text::Option moved_body_options[] = {
+    {.name = "theta",
+     .unit = "rad",
+     .meaning = "moves the body to these angles: a number, an excitation or a function of t; the column torque is what "
+                "that takes",
+     .object = "excitation",
+     .wanted = "a number, an excitation or a function of t"},
+    {.name = "velocity",
+     .unit = "rad per time unit",
+     .meaning = "moves the body at this velocity, from theta0 on: a number, an excitation or a function of t",
+     .object = "excitation",
+     .wanted = "a number, an excitation or a function of t"},
+};
+inline constexpr text::Option joint_options[] = {
+    {"k", "torque per rad", text::its_own, text::not_negative, "stiffness of the spring",
+     text::fills<&model::OscillatorParameters::stiffness>},
+    model::mechanical_options[2],
+    model::mechanical_options[6],
+    model::mechanical_options[7],
+};
+inline constexpr auto body_options = text::joined(inertia_option, moved_body_options, joint_options, friction_options);
+inline constexpr text::Option link_numbers[] = {
+    {.name = "ratio",
+     .otherwise = "1",
+     .range = text::not_zero,
+     .meaning =
+         "of an ideal gear between two bodies: the angle is that of the first less ratio times that of the second",
+     .wanted = "a number other than 0"},
+    {.name = "rigid",
+     .otherwise = "false",
+     .meaning = "true: the link keeps the angle that it has at the start, and carries whatever torque that takes",
+     .wanted = "true or false"},
+};
+inline constexpr auto link_options = text::joined(link_numbers, joint_options, friction_options);
+inline constexpr text::Call body_call{"bodies", "{ I = 1, k = 4, Rd = 0.3 }", body_options};
+inline constexpr text::Call link_call{"links", "{ \"motor\", \"load\", k = 90 }", link_options};
 inline constexpr text::Option bodies_and_links[] = {
     {.name = "bodies",
      .meaning = "several bodies by name: { load = { I = 0.3, Rd = 0.4 }, ... }, each with the options of a "
                 "system of one body, against the ground",
-     .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }"},
+     .wanted = "a table of bodies by name, such as { motor = { I = 0.02 }, load = { I = 0.3, Rd = 0.4 } }",
+     .fields = {&body_call, text::Fields::Place::by_name}},
     {.name = "links",
      .meaning = "connections between bodies: { shaft = { \"motor\", \"load\", k = 90 }, ... }, with "
                 "the options of a body except I; the angle of a link is that of the first body minus ratio (1) times "
                 "that of the second, or of { sun = 1, ring = 1.5, carrier = -2.5, ... } the weighted sum; with rigid = "
                 "true the link keeps its angle: an ideal gear, or a coupling",
-     .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }"},
+     .wanted = "a table of links by name, such as { shaft = { \"motor\", \"load\", k = 90, C = 0.01 } }",
+     .fields = {&link_call, text::Fields::Place::by_name}},
 };
 inline constexpr auto system_options =
     text::joined(body_numbers, friction_options, spring_and_walls, bodies_and_links, model::units_option);

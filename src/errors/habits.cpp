@@ -415,6 +415,9 @@ Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement
 
 std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
     if (!message.near.starts_with("<\\")) return "";
+    if (statement.starts_with("\xFF\xFE") || statement.starts_with("\xFE\xFF")) {
+        return "; the file is text in UTF-16: save it in UTF-8";
+    }
     for (const auto& [sign, meant] : printed_signs) {
         if (statement.find(sign) != std::string_view::npos) {
             return "; instead of " + std::string(sign) + " write " + std::string(meant);

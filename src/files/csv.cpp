@@ -133,6 +133,7 @@ public:
         }
         has_points_ = separator_ == Separator::tab && has_decimal_points();
         has_quoted_commas_ = has_decimal_commas_in_quotes();
+        all_in_quotes_ = are_all_in_quotes();
         split(rows_.front().text, separator_, fields_);
         result_.columns.resize(fields_.size());
         if (!options_.names.empty() && options_.names.size() != fields_.size()) {
@@ -229,12 +230,23 @@ private:
         return tells;
     }
 
+    /// Returns whether each field, those of names included, is in quotes: then quotes do not mean words.
+    [[nodiscard]] bool are_all_in_quotes() {
+        return rows_.size() > 1 && std::all_of(rows_.begin(), rows_.end(), [this](const Row& row) {
+                   split(row.text, separator_, fields_);
+                   return std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
+                       return field.size() >= 2 && field.front() == '"' && field.back() == '"';
+                   });
+               });
+    }
+
     static std::string_view in_quotes(std::string_view field) {
         const bool quoted = field.size() > 2 && field.front() == '"' && field.back() == '"';
         return quoted ? text::trimmed(field.substr(1, field.size() - 2)) : std::string_view();
     }
 
     [[nodiscard]] std::optional<double> number_in(std::string_view field) const {
+        if (all_in_quotes_) return parse_field(in_quotes(field), has_quoted_commas_ || decimal_comma());
         if (has_quoted_commas_ && field.starts_with('"')) {
             if (const std::string_view inside = in_quotes(field); !inside.empty()) return parse_field(inside, true);
         }
@@ -375,7 +387,7 @@ private:
     const ReadOptions& options_;
     bool is_open_;  // whether the last line has no newline
     Separator separator_ = Separator::blanks;
-    bool has_points_ = false, has_quoted_commas_ = false;
+    bool has_points_ = false, has_quoted_commas_ = false, all_in_quotes_ = false;
     std::vector<Row> rows_;
     std::vector<std::string_view> fields_;
     std::vector<double> plain_;

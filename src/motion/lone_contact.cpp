@@ -140,7 +140,7 @@ void LoneContact::go_on() {
 
 void LoneContact::turned(const Standstill& now) {
     motion_ = motion_ == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
-    record_event(model::EventKind::turn, now);
+    if (!at_start(now.t)) record_event(model::EventKind::turn, now);
 }
 
 bool LoneContact::finish() {

@@ -118,6 +118,16 @@ void include_origin(Extent& extent) {
     }
 }
 
+/// Where both axes have one unit, a constant has as much room as the other axis; a point, as its distance from 0.
+void stretch_constants(Extents& all) {
+    if (all.x.empty()) return;
+    double half = std::max(all.x.high - all.x.low, all.y.high - all.y.low) / 2;
+    if (half == 0) half = std::max(std::fabs(all.x.low), std::fabs(all.y.low));
+    for (Extent* own : {&all.x, &all.y}) {
+        if (own->low == own->high) *own = {own->low - half, own->high + half};
+    }
+}
+
 }  // namespace
 
 Scale::Scale(Interval range, bool logarithmic)
@@ -134,6 +144,7 @@ View view_of(const Figure& figure) {
         include_origin(extents.x);
         include_origin(extents.y);
     }
+    if (figure.equal) stretch_constants(extents);
     const bool is_map = figure.shades != nullptr;
     return {
         Scale(with_air(extents.x, figure.x, !is_map && (figure.equal || has_points) ? 0.06 : 0), figure.x.logarithmic),

@@ -62,7 +62,7 @@ inline constexpr text::Option curve_options[] = {
      .choices = dashes_names},
     {.name = "colour",
      .range = {"be a whole number from 1 to 7", [](double x) { return text::is_whole(x, 1, 7); }},
-     .meaning = "its colour; by default a different one for each curve",
+     .meaning = "its colour, a whole number from 1 to 7; by default a different one for each curve",
      .filled = text::fills<&Curve::colour>},
     {.name = "base", .meaning = "the second edge of a fill: a vector as long as x"},
 };

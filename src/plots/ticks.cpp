@@ -132,7 +132,7 @@ void label_linear(Ticks& ticks, Interval range) {
         }
         ticks.offset = fmt::format("{:+.15g}", offset);
         ticks.text = finest < -5 ? in_powers(rest, finest) : fixed(rest, std::max(0, -finest));
-    } else if (leading < most_digits && finest >= -5) {
+    } else if (leading < most_digits + (leading - finest > 4 ? 2 : 0) && finest >= -5) {  // 1000002, not 1.000002e6
         ticks.text = fixed(ticks.at, std::max(0, -finest));
     } else {
         ticks.text = in_powers(ticks.at, finest);

@@ -68,6 +68,24 @@ void add_fields(lua_State* L, char separator, bool calls, std::vector<std::strin
     }
 }
 
+/// What is offered of a column such as load.theta.
+enum class Dotted { nothing, first_word, all };
+
+/// Adds the names that a field of the object on the top lists.
+void add_listed_names(lua_State* L, const char* field, Dotted dotted, std::vector<std::string>& names) {
+    const int object = lua_gettop(L);
+    lua_pushvalue(L, object);
+    lua_pushstring(L, field);
+    errors::go_to_field(L);
+    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
+        const std::string name = lua_tostring(L, -1), first = name.substr(0, name.find('.'));
+        const bool offered = first == name || dotted != Dotted::nothing;
+        if (offered && lua::is_name(first)) names.push_back(dotted == Dotted::all ? name : first);
+        lua_pop(L, 1);
+    }
+    lua_settop(L, object);
+}
+
 std::vector<std::string> members(lua_State* L, const TypedText& typed, bool calls) {
     std::vector<std::string> names;
     const int top = lua_gettop(L);
@@ -128,9 +146,27 @@ OpenTable open_table(lua_State* L, const OpenCall& call) {
     return place == text::Fields::Place::listed ? OpenTable{.list = true} : OpenTable{.options = known->options};
 }
 
+/// The bodies and links in a table by name of a system's method: sys:simulate{ theta0 = { load = 1 } }.
+std::vector<std::string> joint_names(lua_State* L, const OpenCall& call) {
+    std::vector<std::string> names;
+    if (call.path.size() != 1 || call.function.size() < 3) return names;
+    const std::string_view option = call.path.front();
+    const bool of_bodies = option == "theta0" || option == "velocity0" || option == "bodies";
+    if (!of_bodies && option != "M" && option != "belt" && option != "links") return names;
+    const int top = lua_gettop(L);
+    if (meaning(L, call.function.first(call.function.size() - 2)).kind == Meaning::Kind::object) {
+        if (option != "links") add_listed_names(L, "bodies", Dotted::nothing, names);
+        if (!of_bodies) add_listed_names(L, "links", Dotted::nothing, names);
+    }
+    lua_settop(L, top);
+    return names;
+}
+
 std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
     const OpenTable table = open_table(L, call);
-    std::vector<std::string> names;
+    std::vector<std::string> names = joint_names(L, call);
+    std::erase_if(names, [&](const auto& name) { return std::count(call.given.begin(), call.given.end(), name) > 0; });
+    for (std::string& name : names) name += " = ";
     if (table.list) {
         names.emplace_back("{ ");
     }
@@ -597,20 +633,14 @@ Meaning meaning(lua_State* L, std::span<const lua::Token> expression) {
 
 void add_own_names(lua_State* L, std::vector<std::string>& names) {
     const lua::Class* description = lua_isuserdata(L, -1) != 0 ? lua::documented(L, -1).owner : nullptr;
-    if (description == nullptr || description->other_keys == nullptr) {
-        return;
+    if (description == nullptr) return;
+    const std::string_view name = description->name;
+    if (name == "system") {
+        add_listed_names(L, "bodies", Dotted::nothing, names);
+        add_listed_names(L, "links", Dotted::nothing, names);
+    } else if (description->other_keys != nullptr) {
+        add_listed_names(L, "names", name == "run" ? Dotted::first_word : Dotted::nothing, names);
     }
-    const int object = lua_gettop(L);
-    lua_pushvalue(L, object);
-    lua_pushliteral(L, "names");
-    errors::go_to_field(L);
-    for (lua_Integer i = 1; lua_istable(L, -1) && lua_rawgeti(L, -1, i) == LUA_TSTRING; ++i) {
-        if (const std::string name = lua_tostring(L, -1); lua::is_name(name)) {
-            names.push_back(name);
-        }
-        lua_pop(L, 1);
-    }
-    lua_settop(L, object);
 }
 
 std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Token> function) {
@@ -621,7 +651,7 @@ std::vector<std::string> columns_of_owner(lua_State* L, std::span<const lua::Tok
     }
     const int top = lua_gettop(L);
     const Meaning owner = meaning(L, function.first(size - 2));
-    add_own_names(L, names);
+    if (owner.kind == Meaning::Kind::object && lua_isuserdata(L, -1)) add_listed_names(L, "names", Dotted::all, names);
     for (const lua::Member& member : owner.kind == Meaning::Kind::object && owner.section != nullptr && names.empty()
                                          ? owner.section->description->members
                                          : std::span<const lua::Member>()) {

@@ -78,6 +78,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     for (; !wrong && place != fs::recursive_directory_iterator(); place.increment(wrong)) {
         if (place.depth() >= deepest_folder) place.disable_recursion_pending();
         if (text::ending_of(place->path().string()) != ".lua") continue;
+        if (place->path().filename().string().starts_with("._")) continue;  // archives made by macOS have them
         HandIn& hand_in = all.emplace_back();
         hand_in.file = place->path();
         hand_in.name = text::displayable(place->path().lexically_relative(folder).string());

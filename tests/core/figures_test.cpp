@@ -46,6 +46,7 @@ TEST_CASE("curves in the background are drawn first, and dense oscillations as a
                 CHECK(std::fabs(band.base->values[i] + 2) < 0.02);
             }
             CHECK(band.x.values.front() == figure.curves[0].x.values.front());
+            CHECK(band.x.values.back() == figure.curves[0].x.values.back());
         }
     }
 }

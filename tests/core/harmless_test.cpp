@@ -25,6 +25,7 @@ TEST_CASE("sequences that move the cursor, rename the window, hide text or blink
                    "2J") ==
           "\xEF\xBF\xBD"
           "2J");
+    CHECK(harmless("\xF0\x9F\x99\x82 \xE2\x88\x9E") == "\xF0\x9F\x99\x82 \xE2\x88\x9E");  // four bytes and three
     CHECK(harmless("\x1b[38;5;1m") == "?[38;5;1m");
     CHECK(harmless("\x1b[31") == "?[31");
 }

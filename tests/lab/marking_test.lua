@@ -99,10 +99,13 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   hand_in("loop", "lab.number(3001) check('1c', 3) while true do end")
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
+  hand_in("._1-1001", "\0\5\22\7") -- beside each file in archives made by macOS
+  hand_in("wide", "\xFF\xFEl\0a\0b\0")
   hand_in("leaves", "io.open('x', 'w')")
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
   hand_in('a",1,1a,right,1,"b', "lab.number(3004)\ncheck('1a', 1)") -- a name like a line of marks
   hand_in("1-5555", "lab.number(1001)\ncheck('1a', 1)\nlab.number(1002)\ncheck('1a', 1) check('1b', 1)")
+  hand_in("1-3011", "lab.number(3011)\ncheck('1a', 2)\nlab.number(3012)\ncheck('1a', 2) check('1b', 2)")
   hand_in("many", "local x = vector.linspace(0, 1, 2e5) for i = 1, 1e6 do data{ x = x }:save(i .. '.csv') end")
   hand_in("=1+1", "lab.number(3007)\ncheck('1a', 1)") -- a formula for a table program
   hand_in("copy", support.read(home .. "/hand-ins/1-1003.lua"))
@@ -129,11 +132,13 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   assert(rows.loop:find "^3001 .*it ran longer than the 4 s", rows.loop)
   assert(rows.wrong:find "^none +wrong%.lua:2: .*; no answer was checked", rows.wrong)
   assert(rows.flood:find "^none .*File too large", rows.flood)
+  assert(not rows["._1-1001"] and rows.wide:find "UTF%-16: save it in UTF%-8", said)
   assert(rows.leaves:find "^none .*safe mode", rows.leaves)
   assert(rows["-e"]:find "^3003 +%- ", said)
   assert(rows['a",1,1a,right,1,"b']:find "^3004 +%- ", said)
   assert(rows["1-5555"]:find("^1002 .*uses number 1002, but its name says 5555; also uses number 1001, which is not counted; " ..
     "sheet 1 of this number is also in 1%-1002%.lua"), rows["1-5555"])
+  assert(rows["1-3011"]:find("^3011 .*also uses number 3012, which is not counted"), rows["1-3011"])
   assert(rows.copy:find "the same lines of Lua as 1%-1003%.lua; sheet 1 of this number is also in 1%-1003%.lua", rows.copy)
   assert(rows.disguised:find "^3006 .*the same lines of Lua as 1%-1004%.lua$", rows.disguised)
   assert(rows.thinker:find "^3008 .*prose in the same words as echo%.lua$", said)
@@ -185,6 +190,9 @@ test("a sheet of one's own is tested, seen as a student sees it, and marked", fu
   equal(shell "DINAL_SHEETS=mine dinal -e 'lab.number(1) print(#lab.experiment(8).t > 10)'", "true\n")
   shell "mkdir own; echo 'lab.number(4711) check(\"8b\", lab.given(8).k)' > own/8-4711.lua"
   assert(shell("dinal --sheets mine --mark own"):find "\n8%-4711.lua +4711 +%. +%- +0 of 2\n")
+  shell "mkdir mio; sed 's/^sheet(8, {/sheet(8, { language = \"es\",/' mine/8-own.lua > mio/8-propia.lua"
+  said = shell "dinal --sheets mio -e 'lab.number(1) for i = 1, 13 do check(\"8a\", 1000*i) check(\"1a\", 1000*i) end'"
+  assert(said:find "\n1a: not judged, because 12 different values" and said:find "\n8a: no se juzga, porque 12" and not said:find "8a: not", said)
   local function faulty(from, to, message)
     local text = support.read(home .. "/mine/8-own.lua")
     support.write(home .. "/faulty.lua", (text:gsub(from, to)))

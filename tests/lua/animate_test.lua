@@ -59,6 +59,16 @@ test("a belt moves, walls and springs are there if the system has them", functio
     equal(#values(svg, 'attributeName="points'), 0)
     equal(#values(animated(run, {}), 'attributeName="points')[1], 251)
     has(svg, "between walls")
+    -- A mass that leans on a wall touches it.
+    local leans = system{ I = 1, k = 1, walls = { lower = -1, upper = 1, restitution = 0 } }
+    svg = animated(leans:simulate{ M = excitation.step{ at = 5, amplitude = 12 } - 6, t_end = 10 }, {})
+    local half = -tonumber(svg:match '<rect x="(%S+)" y="%S+" width="%S+" height="%S+" rx="3"')
+    local left, right = math.huge, -math.huge
+    for _, x in ipairs(values(svg, 'type="translate')[1]) do left, right = math.min(left, tonumber(x)), math.max(right, tonumber(x)) end
+    local edges = {}
+    for x, width in svg:gmatch '<rect x="(%S+)" y="%S+" width="(%S+)" height="12"' do edges[#edges + 1] = { x + 0, x + width } end
+    near(edges[1][2], left - half, 0.11)
+    near(edges[2][1], right + half, 0.11)
     has_not(animated(run, {}), "patternTransform")
 end)
 

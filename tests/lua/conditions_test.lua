@@ -201,4 +201,10 @@ test("a function that truncates its digits is noise, not a condition", function(
     says(run, "which are sampled")
 end)
 
+test("math.ceil of the motion jumps where the opposite of math.floor does", function()
+    local function run(M) return system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.5, t_end = 20, dt = 0.1 } end
+    local steps = run(function(_, theta) return math.ceil(theta) / 2 end)
+    near(steps.theta, run(function(_, theta) return -math.floor(-theta) / 2 end).theta, 1e-11)
+end)
+
 finish()

@@ -120,6 +120,12 @@ test("a raw log may have lines before it, names, units, disorder, duplicates and
     raises(function() log_of("a\nx\ny\n", { sort = true }) end, "load: sort needs a column of numbers")
     raises(function() log_of("t,x\n1,3\nMean,2\n", { sort = true }) end, "load: sort needs times, and the column 't' holds words, such as 'Mean'")
     raises(function() log_of("t,x\n1,3\n", { skip = 5 }) end, "nothing follows the lines that are skipped")
+    raises(function() identify { data = log_of('t,x\n"1",3\n"2",4\n') } end, "the column 't' of the record holds words, such as the number 1 in double quotes")
+    equal(log_of('"t","theta"\n"0","1.5"\n"0.25","-2e-3"\n').theta, vector { 1.5, -2e-3 }) -- in a file with all fields in quotes
+    equal(log_of('"t";"x"\n"0";"1,5"\n"0,25";"2"\n').x, vector { 1.5, 2 })
+    local back = log_of("t,theta,velocity\n0,1,0\n2,2,1\n1,3,1\n3,4,0\n")
+    has(tostring(back), "data: 4 rows; row 3 is earlier than the one before: sort = true puts them in order")
+    equal(log_of("t,theta,velocity\n0,1,0\n2,2,1\n1,3,1\n3,4,0\n", { sort = true }):at(1), 3.0)
     raises(function() identify { data = log_of("t,x\n1,3\n2,n/a\n") } end, "identify: the column 'x' of the record holds words, such as 'n/a'")
     raises_here(function() read("x.dat", { skip = 1 }) end, "load: the record of 1989 (.dat) has no skip")
     raises(function() log_of(log, { skipp = 2 }) end, "load has no option 'skipp'", "did you mean 'skip'?")

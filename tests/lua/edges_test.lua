@@ -123,6 +123,15 @@ test("an exponential that outgrows the motion is followed at once", function()
 
 end)
 
+test("a turn within the rounding of the start is no event", function()
+    for _, by in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-9 } } do
+        for t_start, velocity0 in pairs { [1] = 1e-17, [1e9] = 1e-9 } do
+            local run = system { I = 1, k = 1 }:simulate { theta0 = 1, velocity0 = velocity0, t_start = t_start, t_end = t_start + 3, integrator = by }
+            equal(#run.events, 0, tostring(by))
+        end
+    end
+end)
+
 test("a step of M at the end of a step of rk4 acts from there on", function()
     local sys, options = system { I = 1, k = 4, C = 0.1, Rd = 0.1 }, { M = excitation.step { at = 1, amplitude = 2 }, theta0 = 0.5, t_end = 5, dt = 0.5 }
     local exact = sys:simulate(options)

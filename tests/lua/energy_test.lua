@@ -61,6 +61,17 @@ test("energy prints as a small table", function()
     end
 end)
 
+test("each row of the table shows the number of the total", function()
+    local shaken = system { I = 1, k = 4, C = 0.2, Rd = 0.1, walls = { upper = 0.05, restitution = 0.5 } }
+        :simulate { M = M, base = excitation.harmonic { omega = 1 }, belt = 0.3, t_end = 10 }:energy()
+    local rows = 0
+    for name, number in tostring(shaken):gmatch "\n  (%l+) +(%S+)" do
+        rows = rows + 1
+        near(tonumber(number), shaken.total[name], 1e-5 * shaken.total.flow)
+    end
+    equal(rows, 9)
+end)
+
 test("runs that have not kept their motion say what to do", function()
     local rk4 = sys:simulate { M = M, t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.01 } }
     raises_here(function() rk4:energy() end, "run:energy(): ", "integrator.exact and integrator.spectral")

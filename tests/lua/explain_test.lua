@@ -120,6 +120,12 @@ test("outputs that are held, and relays of the motion, cannot hide a pulse", fun
     end
 end)
 
+test("a belt under a body without dry friction is said to have no effect", function()
+    local smooth = system { I = 1, k = 4 }:simulate { theta0 = 1, t_end = 5, belt = 1 }
+    says(smooth, "The belt has no effect, as there is no dry friction.", "It turned at theta = -1")
+    has_not(told(smooth), "rubs", "smooth")
+end)
+
 test("a belt that jumps, announced or not, is named as the cause of a slip, with its direction", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, belt in ipairs { 0.2 + excitation.step { amplitude = -0.7, at = 1 }, function(t) return t < 1 and 0.2 or -0.5 end } do

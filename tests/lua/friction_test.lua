@@ -219,4 +219,17 @@ test("friction that falls steeply with the speed stops a fast mass where its dec
     end
 end)
 
+test("uneven breakaway holds alike under exact and spectral, with a table of M and without", function()
+    local uneven = system { I = 1, k = 1, friction = friction.asymmetric { forward = { Rd = 0.2, Re = 2 }, backward = { Rd = 0.1, Re = 1 } } }
+    local t = vector.linspace(0, 20, 201)
+    for _, M in ipairs { excitation.harmonic { amplitude = 0.5, omega = 1 }, excitation.samples { t = t, M = -1.5 * t:sin() } } do
+        for _, theta0 in ipairs { 0, 0.8, -1.7 } do
+            local exact = uneven:simulate { M = M, theta0 = theta0, t_end = 20, dt = 0.1, integrator = integrator.exact {} }
+            local spectral = uneven:simulate { M = M, theta0 = theta0, t_end = 20, dt = 0.1, integrator = integrator.spectral {} }
+            equal(#exact.events, #spectral.events)
+            near(exact.theta, spectral.theta, 1e-10)
+        end
+    end
+end)
+
 finish()

@@ -141,6 +141,8 @@ test("help searches words, suggests names, and has a starting point", function()
     local many = output 'help "the"'
     assert(select(2, many:gsub("\n  %S", "")) <= 10, many)
     has(many, "more: use more of the word")
+    local left = output 'help "wall "':match "and (%d+) more: use"
+    assert(tonumber(left) < 10, left) -- those beyond the ten that are shown
     has(output 'help "run.enrgy"', "did you mean 'energy'?")
     has(output 'help "rig:simulate"', "sys:simulate{") -- the object of a user has a name of his own
     has(output 'help "rig:bogus"', "nothing about 'rig:bogus'")

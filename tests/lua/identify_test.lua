@@ -352,6 +352,10 @@ test("a wrong model is also reported for a free decay, with a guess and for seve
     run = two{ friction = friction.stribeck{ Rd = 0.3, Re = 0.9, speed = 0.3 } }:simulate{ M = M, t_end = 30, dt = 0.05 }
     local d = { t = run.t, ["load.theta"] = run["load.theta"] + vector.normal{ n = #run, seed = 1, std = 0.003 } }
     equal(identify{ data = d, M = M, system = two{ Rd = 0.4 }, free = { "load.Rd", "load.Re", "shaft.k" }, measured = "load.theta" }.misfit, "velocity")
+    -- Also at a measured link of which nothing is fitted.
+    run = two{ C = 0.2 }:with{ links = { shaft = { Rd = 0.3 } } }:simulate{ M = M, t_end = 30, dt = 0.05 }
+    d = { t = run.t, ["shaft.theta"] = run["shaft.theta"] + vector.normal{ n = #run, seed = 1, std = 0.001 } }
+    equal(identify{ data = d, M = M, system = two{ C = 0.2 }, free = { "motor.I" }, measured = "shaft.theta" }.misfit, "velocity")
 end)
 
 test("records with white noise are never called wrong, and their errors cover the truth", function()

@@ -196,7 +196,10 @@ test("an impossible gear is refused with a reason", function()
     raises(links { a = 1, b = 0 }, "the weight of b must be a number other than 0")
     raises(links { a = 1 }, "gives a a weight, but no other body")
     raises(links { a = 1, b = 1, ratio = 2 }, "ratio is for a link that names two bodies")
-    raises(links { "a", "b", rigid = true, k = 1 }, "a rigid link keeps its angle, so k can do nothing there")
+    for option, value in pairs { k = 1, C = 1, spring = spring.polynomial { [3] = 1 }, Rd = 1, Re = 1, friction = friction.freewheel {}, normal = 2,
+        walls = { upper = 1 } } do
+        raises(links { "a", "b", rigid = true, [option] = value }, "a rigid link keeps its angle, so " .. option .. " can do nothing there")
+    end
     raises(links { "a", "b", rigid = 1 }, "rigid must be true or false")
     local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { gear = { "a", "b", ratio = 10, rigid = true } } }
     raises(function() rig:simulate { velocity0 = { a = 1, b = 0.5 }, t_end = 1 } end, "velocity0: the rigid link gear keeps a - 10 b", "a = 1, b = 0.5", "by -4")

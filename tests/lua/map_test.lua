@@ -126,6 +126,16 @@ test("its plot shows points", function()
     has(read(file), "90 points")
 end)
 
+test("the file of a bifurcation with other samples is refused", function()
+    local options = { over = { a = { 1, 2 } }, period = 1, skip = 1, keep = 2, file = temporary ".csv", at = function(p)
+        return { system = nondimensional { zeta = 0.1 }, M = excitation.harmonic { amplitude = p.a, frequency = 1 } }
+    end }
+    equal(tostring(bifurcation(options)), tostring(bifurcation(options)))
+    for name, other in pairs { period = 2, skip = 2, keep = 3 } do
+        raises(function() bifurcation(merged(options, { [name] = other })) end, "is not the result of this sweep")
+    end
+end)
+
 test("points of a bifurcation that fail still have a row", function()
     local b = bifurcation { over = { a = { 1, 2, 3, 4 } }, period = 1, skip = 3, keep = 2, workers = 2, at = function(p)
         if p.a == 2 then error("not this one", 0) end

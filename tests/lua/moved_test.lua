@@ -101,6 +101,14 @@ test("a narrow pulse of a moved body is found, or the gap is reported", function
     near_truth(unread:simulate { t_end = at + later, integrator = integrator.spectral { narrowest = width } })
 end)
 
+test("rigid walls of a moved body are refused: they could not stop it", function()
+    local moved = { theta = math.sin, walls = { upper = 0.5 } }
+    raises_here(function() system { bodies = { cam = moved, b = { I = 1 } } } end,
+        "bodies.cam: rigid walls cannot stop a body that is moved")
+    moved.walls.stiffness = 100
+    assert(system { bodies = { cam = moved, b = { I = 1 } } })
+end)
+
 test("a moved body is not a system by itself", function()
     local rig = system { bodies = { cam = { theta = 0.1, k = 3 }, b = { I = 1 } }, links = { rod = { "b", "cam", k = 3 } } }
     raises_here(function() return rig.cam end, "sys.cam: cam is moved, and so no system by itself")

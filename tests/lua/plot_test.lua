@@ -10,6 +10,19 @@ local function vectors(options)
     return tostring(plot(merged({ show = false, width = 60, ascii = true }, options)))
 end
 
+test("great ticks with many equal digits are written out", function()
+    local t = vector.linspace(1e6, 1e6 + 5, 6)
+    has(tostring(plot{ { t, t:sin() }, show = false }), "1000000", "1000004")
+    has(tostring(plot{ { 1e3*t, t:sin() }, show = false }), "1.000004e9")
+end)
+
+test("a motion at rest has a phase plane as high as it is wide", function()
+    local rest = system{ I = 1, k = 4, Rd = 0.3 }:simulate{ theta0 = 0.05, t_end = 5 }
+    local picture = tostring(rest:phase_plot{ show = false })
+    has(picture, "0.05")
+    assert(not picture:find("1.0", 1, true), picture)
+end)
+
 test("the plot of a driven run shows theta and M/k, of a free one only theta, and when it sticks", function()
     has(picture(run), "a theta", "b M/k", " t")
     has(picture(nd:simulate { M = excitation.harmonic { amplitude = 0.2, frequency = 0.3 }, theta0 = 1, t_end = 9, dt = 0.01 }),
@@ -261,6 +274,7 @@ test("errors in options name their limits", function()
         { { file = "x.svg", width = 50 }, "width is for text" },
         { { file = "x.txt", size = { 8, 6 } }, "size is for .svg, .png and .pdf" },
         { { y = "theta", labels = { "a", "b" } }, "labels has 2 names for 1 column" },
+        { { labels = { theta = "angle" } }, "labels must be a list of words" },
         { { file = "x.jpg" }, "'x.jpg' must end in .svg, .png, .pdf or .txt" },
         { { file = "x" }, "'x' must end in .svg" },
         { { file = "/nowhere/at/all.svg" }, "there is no folder '/nowhere/at'" },

@@ -95,6 +95,7 @@ test("a function that is not a formula is not read, and the line is named", func
     not_read(function(t) local f = function() return t end return f() end, "makes a function")
     not_read(function(t) for _, x in ipairs(list) do t = t + x end return t end, "ipairs")
     not_read(function(t, ...) return t end, "any number of arguments")
+    not_read(function(t) return math.tointeger(t) or 0 end, "math.tointeger with a float")
     has(excitation.scripted(math.sin):obstacle(), "not a Lua function")
 end)
 
@@ -139,6 +140,7 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
         { function(t) return 3 * math.exp(-t / 2) + 0.1 * t - 0.01 * t ^ 2 + (1 - t) * (2 + t) / 50 end },
         { function(t) return t % 2 < 0.7 and 2 or t % 2 < 1.1 and 0.5 or -1 end, 2 },
         { function(t) return math.floor(t / 0.5) % 3 end, 1.5 },
+        { function(t) return t - 1.3 * math.floor(t / 1.3) end, 1.3 },
         { function(t) return math.max(0, math.sin(3 * t)) end, 2 * math.pi / 3 },
         { function(t) return math.abs(math.sin(t)) + (t % 1 < 0.5 and 0.5 or 0) * 0 end },
         { function(t) if t < 1 then return t elseif t < 3 then return math.sin(t) end return 2 * math.exp(3 - t) end },

@@ -101,6 +101,11 @@ test("the theory curves beside a response are Den Hartog's and that of equivalen
     local c = sys:response{ amplitude = 2, over = { frequency = vector.linspace(0.2, 0.5, 20) }, between = true }
     local exact, about = c.den_hartog, c.linearised
     equal(#exact, 400)
+    for name, values in pairs { omega = { 1.5, 2 }, period = { 4, 3 } } do
+        local other = sys:response{ amplitude = 2, over = { [name] = values } }.den_hartog
+        local w = name == "omega" and other.omega[200] or 2*math.pi/other.period[200]
+        near(other.amplitude[200], 2/4 * theory.den_hartog{ r = w/sys.omega0, zeta = sys.zeta, friction_ratio = 0.15 }, 1e-12)
+    end
     local r = exact.frequency[200] * sys.T0
     near(exact.amplitude[200], 2/4 * theory.den_hartog{ r = r, zeta = sys.zeta, friction_ratio = 0.15 }, 1e-12)
     -- The work of M, pi M0 X sin(lag), is what both frictions take from a sine of this amplitude.
@@ -152,6 +157,9 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
             for line, amplitude in pairs{ [1] = 3, [17] = 4, [41] = 2, [100] = 0 } do near(s.amplitude[line], amplitude, 1e-9) end
         end
     end
+    -- The flat top of ISO 18431-2 spreads a line over four to each side.
+    local flat = run:spectrum("M", { window = "flat top", from = 8 }).amplitude
+    for i, part in ipairs{ 1.933, 1.286, 0.388, 0.0322 } do near(flat[17 + i], 4 * part / 2, 1e-9) end
     equal(tostring(run:spectrum("M")):match("^[^\n]*"), "spectrum of M: 1536 rows, hann window")
     -- A prime number of rows is used as it is: 97 of them, 3 periods.
     local prime = sys:simulate{ M = excitation.harmonic{ amplitude = 4, frequency = 1 }, t_end = 3 * 96/97, dt = 3/97 }

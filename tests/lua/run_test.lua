@@ -148,6 +148,7 @@ test("a selection of columns can be saved", function()
     refuses(function(o) run:save(name, o) end, {
         { { columns = { "thta" } }, "thta", "did you mean" },
         { { columns = {} }, "columns must be a list" },
+        { { columns = { "t", 1 } }, "columns names 't' twice" },
         { { column = { "t" } }, "did you mean 'columns'?" },
     })
     raises_here(function() run:save(temporary ".dat", { columns = { "t" } }) end, "six columns")
@@ -192,12 +193,12 @@ function global_drive(t) return global_gain * math.sin(global_omega * t) end
 
 test("the comment block repeats a scripted M with its local and global variables as they were", function()
     check_repeats(nd:simulate { M = function(t) return math.sin(t) end, t_end = 2, dt = 0.1 }, "one line")
-    local gain, table_of = 2.5, { 1, 2, { x = 0.5, ["a b"] = true } }
+    local gain, table_of = 2.5, { [0] = 0.25, 1, 2, { x = 0.5, ["a b"] = true } }
     local function helper(x) return gain * x end
     local M = function(t, theta, velocity)
         -- a comment with "end" in it
         local text = "end"
-        return helper(math.sin(7 * t)) * table_of[3].x - 0.1 * velocity + #text - 3
+        return helper(math.sin(7 * t)) * table_of[3].x - 0.1 * velocity + #text - 3 + table_of[0]
     end
     check_repeats(nd:simulate { M = M, t_end = 2, dt = 0.1 }, "locals")
     global_gain, global_omega = 3, 1 / 3

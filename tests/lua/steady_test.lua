@@ -352,6 +352,8 @@ end)
 test("linear growth has the rate of its closed form", function()
     local uneven = friction.asymmetric { forward = { Rd = 0.1 }, backward = { Rd = 0.3 } }
     near(system{ I = 1, k = 1, friction = uneven }:steady{ M = excitation.harmonic{ omega = 1 } }.growth, math.pi - 0.8, 1e-9)
+    local beside = excitation.harmonic{ omega = 0.5 } + excitation.harmonic{ omega = 1, amplitude = 0.8 } -- repeats every two natural periods
+    near(system{ I = 1, k = 1, Rd = 0.05 }:steady{ M = beside }.growth, 2 * (0.8 * math.pi - 0.2), 1e-9)
     local fed = system{ I = 1, k = 1 }:steady{ M = function(_, _, v) return v > 0 and 0.1 or -0.1 end, velocity0 = 1 }
     near(fed.growth, 0.4, 0.02)
 end)

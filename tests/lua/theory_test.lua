@@ -93,6 +93,10 @@ test("step limits of another rule need a start", function()
         { { system = sys, rule = "reprot" }, "did you mean 'report'?" },
         { { system = sys, rule = "report" }, "theta0 or velocity0 is needed" },
     })
+    local own = sys:characteristic_torque(1)
+    local function limit(Mc) return theory.step_limit { system = sys, rule = "report", theta0 = 1, Mc = Mc } end
+    equal(limit(own), limit())
+    near(limit(2 * own), limit() / 2, 1e-15)
 end)
 
 test("wrong values are refused with the option, the element and the limit", function()

@@ -72,6 +72,11 @@ test("other starts find motions far larger than the one found, and adhesion", fu
         near(small.others[1].amplitude, large.amplitude, 1e-6 * large.amplitude)
         near(large.others[1].amplitude, small.amplitude, 1e-6 * large.amplitude)
     end
+    -- Two wells: the motion in the other one has the same amplitude about the opposite mean.
+    local wells = system{ I = 1, k = 0, C = 0.3, spring = spring.polynomial{ [1] = -1, [3] = 1 } }
+    local right = wells:steady{ M = excitation.harmonic{ amplitude = 0.05, omega = 1 }, theta0 = 1 }
+    equal(#right.others, 1)
+    near(right.others[1].mean, -right.mean, 1e-6)
     local held = system{ I = 1, k = 1, C = 0.02, Rd = 0.3, Re = 1.1 }
     local s = held:steady{ M = excitation.harmonic{ omega = 1 }, theta0 = 5 }
     equal(s.status, "steady")

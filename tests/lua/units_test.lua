@@ -30,6 +30,12 @@ test("a run may have its own units, instead of those of the system", function()
     equal(own:continue{ t_end = 6 }.units.theta, "mm")
 end)
 
+test("the varied column of a response has its unit", function()
+    for name, unit in pairs { period = "s", frequency = "1/s", omega = "rad/s" } do
+        equal(block:response { over = { [name] = { 2, 3 } } }.units[name], unit, name)
+    end
+end)
+
 test("no number depends on the units", function()
     local other = plain:simulate(asked())
     equal(run.theta, other.theta)

@@ -94,6 +94,19 @@ class Completion(Typing):
         self.completes(terminal, "sys:simulate{ M = excitation.pulse{ wi", "sys:simulate{ M = excitation.pulse{ width = ")
         self.completes(terminal, "sys:simulate{ integrator = integrator.rk", "sys:simulate{ integrator = integrator.rk4{ ")
 
+    def test_names_of_bodies_and_links(self):
+        terminal = self.terminal(TERM="dumb")
+        terminal.enter("rig = system{ bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { shaft = { 'motor', 'load', k = 6 } } }")
+        terminal.enter("run = rig:simulate{ velocity0 = { motor = 1 }, t_end = 1 }")
+        for typed, whole in [("rig.mot", "rig.motor"), ("rig.sha", "rig.shaft"), ("run.lo", "run.load"),
+                             ("run.shaft.to", "run.shaft.torque"),
+                             ("rig:simulate{ theta0 = { lo", "rig:simulate{ theta0 = { load ="),
+                             ("rig:simulate{ velocity0 = { load = 1, ", "rig:simulate{ velocity0 = { load = 1, motor ="),
+                             ("rig:simulate{ M = { sh", "rig:simulate{ M = { shaft ="),
+                             ("system{ bodies = { a = { fri", "system{ bodies = { a = { friction ="),
+                             ("rig:with{ links = { shaft = { rig", "rig:with{ links = { shaft = { rigid =")]:
+            self.completes(terminal, typed, whole)
+
     def test_fields_of_tables_within_options(self):
         terminal = self.terminal(TERM="dumb")
         terminal.enter(SYSTEM)

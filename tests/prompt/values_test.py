@@ -26,6 +26,11 @@ class Values(AtHome):
                       "zeta       0          damping ratio: undamped", "dead_zone  0.05       the mass can rest"]:
             self.assertIn(piece, card)
 
+    def test_a_card_has_the_friction_that_was_given_and_its_factor(self):
+        card = self.terminal().enter("system{ I = 1, k = 4, Rd = 0.5, Re = 0.6, normal = 2 }")
+        for piece in ["Rd         0.5 ", "Re         0.6 ", "normal     2 "]:
+            self.assertIn(piece, card)
+
     def test_a_card_says_the_units_and_what_follows_from_them(self):
         terminal = self.terminal(width=100)
         terminal.enter('block = system{ I = 2, k = 800, C = 3, Rd = 3, units = { theta = "m", t = "s", M = "N" } }')
@@ -64,6 +69,12 @@ class Values(AtHome):
         self.assertEqual(terminal.enter("math.sin"), "function math.sin of Lua")
         self.assertEqual(terminal.enter("nondimensional").split("{")[0], "function nondimensional")
         self.assertTrue(terminal.enter("excitation").startswith("excitation: constant, harmonic,"))
+
+    def test_a_long_table_says_how_many_items_are_left_out(self):
+        terminal = self.terminal()
+        terminal.enter("t = {} for i = 1, 5000 do t[i] = i end")
+        *_, last, left, _ = terminal.enter("t").splitlines()
+        self.assertEqual(left, f"  ... {5000 - int(last.rstrip(',').split()[-1])} more")
 
     def test_everything_fits_in_forty_columns(self):
         terminal = self.terminal(width=40, height=50)
@@ -110,7 +121,7 @@ class Notices(AtHome):
                               ("x = 1,5", "(1,5 are two numbers, and x is the first; a decimal point is a point: 1.5)"),
                               ("x = pi", "('pi' is nil; did you mean 'math.pi'?)")]:
             self.assertEqual(terminal.enter(typed).replace("\n", " "), notice)
-        for typed in ["x = M", "y = { x, M }", "a, b = 1, 5", "x = nil", "f = function() x = later end", "local n = 3 m = n",
+        for typed in ["x = M", "y = { x, M }", "a, b = 1, 5", "x = nil", "f = function() x = later end", "f = function() n = m; return n end", "local n = 3 m = n",
                       "t = { [1] = M }", "w = qwertz"]:
             self.assertEqual(terminal.enter(typed), "", typed)
 

@@ -57,6 +57,11 @@ class Objects(unittest.TestCase):
         self.assertIsInstance(self.run, dinal.Run)
         self.assertEqual(dinal.nondimensional().I, dinal.nondimensional(zeta=0).I)
 
+    def test_names_in_a_run(self):
+        run = dinal.system(I=1, k=4).simulate(theta0=1, t_end=1)
+        self.assertTrue("theta" in run and run[0] in run and "x" not in run)
+        self.assertEqual(dinal.version, dinal.__version__)
+
     def test_what_is_shown(self):
         lua = subprocess.run([PROGRAM, "-e", "print(system{ I = 1, k = 4, Rd = .3, Re = .4 }:simulate{ theta0 = 1, t_end = 20 })"],
                              capture_output=True, text=True)

@@ -226,6 +226,7 @@ class Points(InAFolder):
 
     def test_what_is_wrong(self):
         for error, options in ((TypeError, dict(over={"r": [1]}, run=slow, workers=2)), (TypeError, dict(run=slow)),
+                               (TypeError, dict(over={"r": [1]}, run=slow, executor=3)),
                                (dinal.Error, dict(over={"r": []}, run=slow)), (dinal.Error, dict(over={"r": [1]}, run=3)),
                                (dinal.Error, dict(over={"r": [1]}, run=slow, max_time=1)),
                                (ValueError, dict(over={"r": [1]}, run=slow, file="map.txt"))):

@@ -31,7 +31,7 @@ _find_numpy()
 from . import _dinal, _objects, _words
 from ._objects import Error, Function, Object, Record, RunWarning
 
-__version__ = _dinal.__version__
+version = __version__ = _dinal.__version__
 
 
 def lua(text, **variables):
@@ -48,7 +48,7 @@ def __getattr__(name):
 
 
 def __dir__():
-    return [*__all__, "__version__", "__doc__"]
+    return [*__all__, "version", "__version__", "__doc__"]
 
 
 _dinal.set_up(_objects, _objects.in_notebook())

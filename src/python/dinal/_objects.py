@@ -79,6 +79,10 @@ class Object(_dinal.Reference):
         is_words = isinstance(value, list) and value and all(isinstance(word, str) for word in value)
         return numpy.array(value) if is_words else value
 
+    def __contains__(self, key):
+        """Of a word whether it names a column, as for a dictionary."""
+        return key in self.keys() if isinstance(key, str) and hasattr(type(self), "keys") else any(key == one for one in self)
+
     def __copy__(self):
         return self  # objects never change
 

@@ -140,6 +140,10 @@ def sweep(*, over, run, executor=None, file=None, seed=0, progress=None, workers
         options["workers"] = workers
     elif workers is not None:
         raise TypeError("workers is of a Lua function without an executor: an executor has workers of its own")
+    makes = isinstance(executor, type) or callable(executor) and not hasattr(executor, "submit")
+    if executor is not None and not makes and not hasattr(executor, "submit"):
+        raise TypeError("executor must be a concurrent.futures.Executor, such as ProcessPoolExecutor(8), or a function that "
+                        f"makes one, not a {type(executor).__name__}")
     kept = {**options, "file": file and os.fspath(file)}
     own = run.options["run"] if isinstance(run, LuaFile) else run
     if is_lua and executor is None and progress is None:
@@ -148,7 +152,6 @@ def sweep(*, over, run, executor=None, file=None, seed=0, progress=None, workers
     mark = "" if is_lua else hashlib.sha256(repr(digest(run, {})).encode() if file else os.urandom(32)).hexdigest()
     parts = _dinal.sweep_in_parts({**kept, "run": own}, mark)
     call, tries = (part, run, options), 0
-    makes = isinstance(executor, type) or callable(executor) and not hasattr(executor, "submit")
     try:
         while chunks := [(int(first), min(int(first) + parts.chunk, parts.size)) for first in parts.left(parts)]:
             pool = executor() if makes else executor

@@ -14,6 +14,7 @@ from typing import Any, Literal, overload
 from .types import Callback, Columns, Number, Numbers, Options, Path, Vector
 
 __version__: str
+version: str
 partial: Run | Data | None
 class Error(Exception):
     call: str
