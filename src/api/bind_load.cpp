@@ -268,8 +268,8 @@ constexpr lua::Member load_members[] = {
       "Numbers may be among the names, t,100,200, if the first is a word and has only numbers below it. A column with "
       "anything but numbers, nan and empty fields (nan) is one of words. A line of words between the names and the "
       "numbers has the units of the columns. In a file with semicolons or tabs 1,5 is a number, and 1.5D+00 is one "
-      "everywhere; in quotes \"1,5\" is one too, and any number if all fields are in quotes. A last line that ends in "
-      "the middle is left out, which the first line of the data tells. With other arguments it is Lua's own load.",
+      "everywhere; in quotes \"1,5\" is one too, and any number if all fields are. A last line that ends in the "
+      "middle is left out, as the data says. With other arguments it is Lua's own load.",
       "run = nondimensional{}:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }\n"
       "file = os.tmpname() .. \".csv\"\n"
       "run:save(file)\n"
