@@ -207,4 +207,35 @@ test("math.ceil of the motion jumps where the opposite of math.floor does", func
     near(steps.theta, run(function(_, theta) return -math.floor(-theta) / 2 end).theta, 1e-11)
 end)
 
+test("a narrow window that a square decides is passed whole in M, springs, rates and beside another body", function()
+    local p, free = 1.9715, system { I = 1, k = 0 }
+    local faster, slower = math.sqrt(1 + 2 * 0.2), math.sqrt(1 - 2 * 0.2)
+    local function last(column) return column[#column] end
+    for _, w in ipairs { 1e-3, 1e-5, 1e-6, 1e-7 } do
+        local A = 0.1 / w
+        for _, f in ipairs {
+            function(x) return (x - p) ^ 2 < w ^ 2 and A or 0 end,
+            function(x) return 1.5 * A * math.max(0, 1 - ((x - p) / w) ^ 2) end,
+            function(x) return math.abs(x - p) < w and A or 0 end,
+        } do
+            local from = { velocity0 = 1, t_end = 5 }
+            near(last(system { I = 1, k = 0, spring = f }:simulate(from).velocity), slower, 1e-9)
+            near(last(free:simulate { velocity0 = 1, t_end = 5, M = function(_, x) return f(x) end }.velocity), faster, 1e-9)
+            local asked = free:simulate { velocity0 = 1, t_end = 5, states = { z = { rate = function(_, x) return f(x) end } } }
+            near(last(asked.states.z), 0.2, 1e-9)
+            local rig = system { bodies = { a = { I = 1 }, b = { I = 1, Rd = 0.1 } } }
+            local both = rig:simulate { velocity0 = { a = 1 }, t_end = 5, M = { a = function(_, theta) return f(theta.a) end } }
+            near(last(both.a.velocity), faster, 1e-9)
+        end
+    end
+end)
+
+test("what a formula would do beyond its kink does not spoil the rate of a state before it", function()
+    for _, w in ipairs { 3e-4, 1e-2 } do
+        local rate = function(_, x) return 0.1 / w * math.exp(-math.abs(x - 1.5) / w) end
+        local run = system { I = 1, k = 0 }:simulate { velocity0 = 1, t_end = 5, states = { z = { rate = rate } } }
+        near(run.states.z[#run.t], 0.2, 1e-12)
+    end
+end)
+
 finish()

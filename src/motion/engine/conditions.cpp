@@ -265,7 +265,8 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
 /// motion so fast, so that the crossing may be rounding of a long stretch.
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
     const auto [step, beyond, of] = function.conditions()[condition];
-    return last_.function == &function && last_.t == now && last_.step == step && is_of_angles(of);
+    const bool of_place = function.is_law() ? function.is_spring() : is_of_angles(of);
+    return last_.function == &function && last_.t == now && last_.step == step && of_place;
 }
 
 Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& chatter) {

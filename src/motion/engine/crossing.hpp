@@ -156,21 +156,22 @@ private:
         for (double& each : values) each *= half;
         Bounded<points> curve(half, series, derivative(series), values);
         curve.raise_floor(rounded_);
-        double near = 1e-7 * part.half;
+        double near = 1e-7 * part.half, low = start;  // at `low` the value is still in its half
         while (start < part.end()) {
             const auto found = first_below(curve, std::max(-1.0, part.inside(start)));
             if (!found) break;
             const double x = part.place(*found);
             if (usual_ > 0) {
-                const auto zero = refined(half, std::max(start, x - usual_), std::min(part.end(), x + usual_));
+                const auto zero = refined(half, std::max(low, x - usual_), std::min(part.end(), x + usual_));
                 if (zero) return zero;
             }
-            double a = std::max(start, x - near);
-            while (a > start && half * exact_(a) < -rounded_) a = std::max(start, x - (near *= 2));
+            double a = std::max(low, x - near);
+            while (a > low && half * exact_(a) < 0) a = std::max(low, x - (near *= 2));
             if (half * exact_(a) < -rounded_) return a;  // the value was below zero earlier
             const double b = std::min(part.end(), x + near);
             if (const auto zero = refined(half, a, b)) return zero;
             start = b;
+            if (half * exact_(b) >= 0) low = b;
             near *= 2;
         }
         return {};

@@ -37,6 +37,7 @@ Flow::Flow(const Mechanics& mechanics, double tolerance, double longest)
 Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                           const std::vector<double>& departing) {
     unresolved_ = std::numeric_limits<double>::infinity();
+    note_rates_until(s.start.hi, s);
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
     sizes_.at_start.find(mechanics_, s, {s.times[0], s.side(0), begin});
     const Attempt attempt = find(s, mode, frame, departing);
@@ -59,6 +60,29 @@ Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, cons
     find_holding(s, mode, frame);
     find_limits(s, mode);
     return accept(s, mode, frame);
+}
+
+/// Updates the greatest rates of states by those of the last stretch up to its end. Rates after that time, and those of
+/// a failed attempt, did not act.
+void Flow::note_rates_until(double end, const Segment& s) {
+    for (std::size_t k = 0; k < m_ && !s.f.empty(); ++k) {
+        for (std::size_t j = 0; j < node_count && s.times[j] <= end; ++j) {
+            fastest_.rates[k] = std::max(fastest_.rates[k], std::fabs(s.f[2 * n_ + k][j]));
+        }
+    }
+}
+
+bool Flow::is_dwarfed_beyond(double x, const Segment& s) const {
+    constexpr double much = 1e3;
+    for (std::size_t k = n_; k < s.f.size(); ++k) {
+        double before = 0, beyond = 0;
+        for (std::size_t j = 0; j < node_count; ++j) {
+            double& greatest = cheb::nodes[j] <= x ? before : beyond;
+            greatest = std::max(greatest, std::fabs(s.f[k][j]));
+        }
+        if (beyond > much * before) return true;
+    }
+    return false;
 }
 
 /// Checks that nothing happens between the nodes that the nodes do not show.
@@ -429,10 +453,10 @@ void Flow::judge_states(const Segment& s, const Frame& frame, const std::vector<
     for (std::size_t k = 0; k < m_; ++k) {
         Series series = s.rates[2 * n_ + k];
         for (double& c : series) c *= h;
-        fastest_.rates[k] = std::max(fastest_.rates[k], greatest(s.f[2 * n_ + k]));
+        const double fastest = std::max(fastest_.rates[k], greatest(s.f[2 * n_ + k]));
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
-            64 * rounding * h * fastest_.rates[k] + lost_in_time(series, late(s), h, h * fastest_.rates[k]) +
+            64 * rounding * h * fastest + lost_in_time(series, late(s), h, h * fastest) +
             h * noise_.floor().noise[n_ + k] + of_others(by_others, frame.groups() + k);
         note(s, series, 1, allowed + smallest);
     }

@@ -34,6 +34,9 @@ public:
     /// Proves, for a stretch that is used up to the point x only, that functions do nothing else there. Returns false
     /// if one does. Not for Runge-Kutta steps, which prove nothing.
     bool hides_nothing_until(double x, Segment& segment, const Mode& mode);
+    /// Returns whether an acceleration or a rate is so much greater beyond the point x that the error of the stretch,
+    /// which is relative to the greatest one, may matter before x.
+    [[nodiscard]] bool is_dwarfed_beyond(double x, const Segment& segment) const;
     [[nodiscard]] double bad_time() const { return bad_time_; }
     /// The error of the last stretch over the allowed one, scaled as if of order 16; at most 1 if it is resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
@@ -121,6 +124,7 @@ private:
     void make_room(Segment& segment) const;
     void find_holding(Segment& segment, const Mode& mode, const Frame& frame);
     [[nodiscard]] bool is_compared(std::size_t joint, const Mode& mode) const;
+    void note_rates_until(double end, const Segment& segment);
     bool sample(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin);
     void fit_series(Segment& segment, const Frame& frame, const std::vector<double>& begin);
     void judge_bodies(const Segment& segment, const Mode& mode, const Frame& frame,

@@ -290,13 +290,15 @@ bool Engine::ends_before(double x) {
     return true;
 }
 
-/// Repeats a stretch with nearly its useful length if its first event is very early. A function that acts only in a
-/// short window may take a long extrapolation so far away that the window's end is lost to rounding.
+/// Repeats a stretch with nearly its useful length if its first event is very early, or if what formulas would do
+/// beyond it dwarfs what they do before. A function that acts only in a short window may take a long extrapolation so
+/// far away that the window's end is lost to rounding.
 bool Engine::comes_early(const Ending& ending) {
     constexpr double early = 1.0 / 64, least = 1.0 / 1024;
     const double part = 1 + ending.x, late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
-    if (problem_.step > 0 || part > early || (part <= 0 && !ending.blurred)) return false;
-    const double h = segment_.h * std::max(part, least);
+    if (problem_.step > 0 || (part <= 0 && !ending.blurred)) return false;
+    if (part > early && !(ending.x < 1 && solver_->is_dwarfed_beyond(ending.x, segment_))) return false;
+    const double h = segment_.h * (part > early ? part / 2 : std::max(part, least));
     if (2 * h <= std::max(shortest * pace_.unit, 16 * rounding * late)) return false;
     pace_.make_again(h, segment_.h);
     return true;

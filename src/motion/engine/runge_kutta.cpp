@@ -93,13 +93,11 @@ Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame,
 
 Flow::Attempt RungeKutta::accept(Segment& s, const Mode& mode, const Frame& frame) {
     const double error = pair_ != nullptr ? error_of_step(s, frame) : 0;
-    const std::vector<double> fastest = fastest_.rates;
     judge(s, mode, frame);
     s.proven = pair_ != nullptr || !mechanics_.has_functions();
     if (pair_ == nullptr) return Attempt::resolved;
     unresolved_ = std::max(unresolved_, std::pow(error, cheb::degree / pair_->power));
     growth_ = std::min(growth_, std::pow(error, -1 / pair_->power));
-    if (unresolved_ > 1) fastest_.rates = fastest;  // discard those of a step that went astray
     return look_between(s, mode, frame);
 }
 

@@ -93,6 +93,7 @@ public:
 
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
     [[nodiscard]] bool is_law() const { return law_.has_value(); }
+    [[nodiscard]] bool is_spring() const { return law_ && law_->of_angle; }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
     /// The next time at which the formula changes.
     [[nodiscard]] double next_break(double t) const {
