@@ -73,14 +73,14 @@ void Flow::note_rates_until(double end, const Segment& s) {
 }
 
 bool Flow::is_dwarfed_beyond(double x, const Segment& s) const {
-    constexpr double much = 1e3;
+    constexpr double dwarfs = 1e3;
     for (std::size_t k = n_; k < s.f.size(); ++k) {
         double before = 0, beyond = 0;
         for (std::size_t j = 0; j < node_count; ++j) {
             double& greatest = cheb::nodes[j] <= x ? before : beyond;
             greatest = std::max(greatest, std::fabs(s.f[k][j]));
         }
-        if (beyond > much * before) return true;
+        if (beyond > dwarfs * before) return true;
     }
     return false;
 }
