@@ -118,7 +118,8 @@ void include_origin(Extent& extent) {
     }
 }
 
-/// Where both axes have one unit, a constant has as much room as the other axis; a point, as its distance from 0.
+/// Gives a constant as much room as the other axis has, and a point as much as its distance from 0, for figures whose
+/// axes have one unit.
 void stretch_constants(Extents& all) {
     if (all.x.empty()) return;
     double half = std::max(all.x.high - all.x.low, all.y.high - all.y.low) / 2;

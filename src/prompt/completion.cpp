@@ -68,7 +68,7 @@ void add_fields(lua_State* L, char separator, bool calls, std::vector<std::strin
     }
 }
 
-/// What is offered of a column such as load.theta.
+/// The part of a name such as load.theta that is offered.
 enum class Dotted { nothing, first_word, all };
 
 /// Adds the names that a field of the object on the top lists.

@@ -80,7 +80,7 @@ class Object(_dinal.Reference):
         return numpy.array(value) if is_words else value
 
     def __contains__(self, key):
-        """Of a word whether it names a column, as for a dictionary."""
+        """A word is tested as the name of a column, as by a dictionary; anything else as a value."""
         return key in self.keys() if isinstance(key, str) and hasattr(type(self), "keys") else any(key == one for one in self)
 
     def __copy__(self):
