@@ -63,6 +63,28 @@ test("a freewheel and a wall that would stop a train by ever smaller impacts sto
     near(run:energy().total.impacts, 0.2 * 0.66 ^ 2 + 0.8 * 4, 1e-13)
 end)
 
+test("a belt or a moved body takes along what a freewheel keeps from falling behind, from the start", function()
+    local block = system { I = 1, k = 0, friction = friction.freewheel { Rd = 0.2 } }
+    local function ends_at(theta, velocity, options)
+        local run = block:simulate(merged({ t_start = 2, t_end = 3, dt = 1 }, options))
+        near(run.theta[2], theta, 1e-12)
+        near(run.velocity[2], velocity, 1e-12)
+        closes(run)
+    end
+    local ramp = excitation.ramp { slope = 1 }
+    ends_at(2.5, 3, { belt = ramp, velocity0 = 2 })
+    ends_at(2.5, 3, { belt = function(t) return t end })
+    ends_at(-0.6, -0.7, { belt = -1, velocity0 = -0.5 })
+    raises(function() block:simulate { belt = ramp, t_start = 2, t_end = 3 } end, "the freewheel turns forward only, but begins with -2")
+    for _, v in ipairs { 2, -2 } do
+        local rig = system { bodies = { motor = { velocity = function() return v end }, load = { I = 1 } },
+            links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }
+        local run = rig:simulate { t_end = 1, dt = 1 }
+        near(run.load.velocity[2], v > 0 and 2 or -0.3, 1e-12)
+        closes(run)
+    end
+end)
+
 test("an impact that would turn a freewheel backward stops it", function()
     -- c strikes b, which may not fall behind a: all three go on as one mass would.
     local rig = system { bodies = { a = { I = 2 }, b = { I = 1 }, c = { I = 1 } },

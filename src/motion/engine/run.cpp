@@ -102,12 +102,15 @@ void Engine::begin() {
         if (!sample_controllers()) fail(Outcome::excitation_not_finite);
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
+        // A belt or a moved body takes along from the start what a freewheel keeps from falling behind.
+        const std::vector<double> caught = catch_freewheels();
         press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (!now_.rubs(j)) continue;
             const double s = now_.slip(mechanics_, j);
             const bool weighted = problem_.system.joints[j].is_weighted();
-            if (std::fabs(s) > (weighted ? 4 * rounding * mechanics_.speed_scale(j, now_.y) : 0)) {
+            const double rounded = weighted ? 4 * rounding * mechanics_.speed_scale(j, now_.y) : 0;
+            if (std::fabs(s) > (caught.empty() ? rounded : caught[j])) {
                 contacts_.slide(mechanics_, now_, j, model::motion_of(s), false);
             } else {
                 now_.mode.friction[j].way = Motion::stuck;
