@@ -123,12 +123,27 @@ bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
     return false;
 }
 
+/// Returns whether a function that runs has a variable of this name: the statement may belong to several, as in
+/// sys:simulate{ M = function(t) error "no" end }.
+bool is_variable(lua_State* L, lua_Debug* frame, std::string_view name) {
+    constexpr int most_levels = 50;
+    const auto knows = [&](lua_Debug* of) {
+        const std::vector<std::string> names = variables(L, of);
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (knows(frame)) return true;
+    lua_Debug caller{};
+    for (int level = 0; level < most_levels && lua_getstack(L, level, &caller) != 0; ++level) {
+        if (knows(&caller)) return true;
+    }
+    return false;
+}
+
 /// Returns whether the token is a global that is nil and that the statement does not declare.
 bool is_nil_global(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& all, std::size_t i) {
     const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
     if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text)) return false;
-    const std::vector<std::string> local = variables(L, frame);
-    if (std::find(local.begin(), local.end(), all[i].text) != local.end()) return false;
+    if (is_variable(L, frame, all[i].text)) return false;
     const bool is_nil = lua::push_global(L, all[i].text) == LUA_TNIL;
     lua_pop(L, 1);
     return is_nil;
