@@ -62,6 +62,17 @@ test("getmetatable of an object returns a name, so that nobody breaks it by acci
     assert(not pcall(setmetatable, system { I = 1, k = 1 }, {}))
 end)
 
+test("a list of numbers has none that is not finite", function()
+    local sys = system { I = 1, k = 1 }
+    local run = sys:simulate { theta0 = 1, t_end = 1 }
+    for word, number in pairs { inf = math.huge, nan = 0 / 0 } do
+        for _, call in ipairs { vector, function(list) return excitation.ramp {}:values(list) end, function(list) return run:at(list) end,
+            function(list) return sys:simulate { times = list } end } do
+            raises(function() call { 0.5, number } end, "[2] = " .. word .. " must be finite")
+        end
+    end
+end)
+
 test("errors of a call through pcall and in a tail call still name a line", function()
     local function tail() return system { I = 0, k = 1 } end
     raises_here(tail, "system: I = 0")

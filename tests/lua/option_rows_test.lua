@@ -22,6 +22,23 @@ do
     end
 end
 
+--- What the help on a call says that a number must be, which the manual leaves out: heading and name -> "be positive".
+local limits = {}
+do
+    local headings = {}
+    for heading in pairs(calls) do headings[#headings + 1] = ("help %q"):format(heading:gsub(" 2$", "")) end
+    table.sort(headings)
+    local text = output(table.concat(headings, "\nprint 'next'\n"))
+    local n, row = 1, nil
+    for line in (text .. "\n"):gmatch "(.-)\n" do
+        if line == "next" then n = n + 1 end
+        local name = line:match "^  ([%a_][%w_]*)"
+        row = name and line or row and line:match "^    +%S" and row .. " " .. line:match "%S.*"
+        local must = row and row:match "%(.*must ([^)]*)%)"
+        if must then limits[headings[n]:match '"(.*)"' .. " " .. row:match "[%a_][%w_]*"] = must end
+    end
+end
+
 --- What the examples speak of.
 local world = setmetatable({}, { __index = _G })
 world.sys = nondimensional { zeta = 0.1, friction_ratio = 0.1 }
@@ -71,7 +88,27 @@ local function partner(option)
     return option.meaning:match "instead of ([%a_][%w_]*)[,)]" or option.meaning:match "this or ([%a_][%w_]*) is needed"
 end
 
-local tested = 0
+--- The options that may be math.huge, of all: no other takes what is not finite, but for gaps in vectors of theory.
+local may_be_endless = { ["excitation.ramp duration"] = true, ["friction.lugre speed"] = true, ["integrator.spectral max_panel"] = true,
+    ["integrator.spectral narrowest"] = true }
+
+--- Numbers next to a limit, and whether they are refused.
+local function around(limit, is_dear)
+    if limit == "be positive" then return { [-1] = true, [0] = true, [2] = false } end
+    if limit == "not be negative" then return { [-1e-9] = true, [0] = false } end
+    if limit == "not be zero" then return { [0] = true, [-1] = false } end
+    if limit == "be 0 or from 0.0001 to 1e6" then return { [-1] = true, [0.9e-4] = true, [1e-4] = false, [1e6] = false, [1.1e6] = true } end
+    if limit == "be from 0 to less than 1" then return { [-1e-9] = true, [0] = false, [1] = true } end
+    if limit == "be at least 1" then return { [0.99] = true, [1] = false } end
+    local least, most = limit:match "^be a whole number from (%d+) to (%S+)$"
+    if not least then return { [-0.1] = true, [1.1] = true, [0.5] = false } end -- lie between 0 and 1
+    least, most = tonumber(least), most == "2^53" and 2 ^ 53 or tonumber(most)
+    local values = { [least - 1] = true, [least + 0.5] = true, [least] = false, [most * 1.01 // 1 + 1] = true }
+    if most <= 1000 and not is_dear then values[most] = false end
+    return values
+end
+
+local tested, limited = 0, 0
 for heading, options in pairs(calls) do
     test("the options of " .. heading, function()
         local is_plot = heading == "plot"
@@ -92,14 +129,19 @@ for heading, options in pairs(calls) do
                 end
             end
             refused(example, give(coroutine.create(print)), heading .. ": ", option.name, "a thread")
-            if option.meaning:find "must " then
-                local told = false
-                for _, value in ipairs { -1, 0, 0.5, 2, 1e-9 } do
-                    local ok, message = pcall(call_with(example, give(value)))
-                    told = told or not ok and message:find("call:1: " .. heading, 1, true) and
-                        message:find(("%s = %.6g must "):format(option.name, value), 1, true) ~= nil
+            for _, value in ipairs { math.huge, 0 / 0, { 1, math.huge }, { 1, 0 / 0 } } do
+                local is_gap = heading:find "^theory" and type(value) == "table" and value[2] ~= value[2]
+                local call = call_with(example, give(value))
+                if not (is_gap or may_be_endless[heading .. " " .. option.name] and value == math.huge) then
+                    raises(call, "call:1: ")
                 end
-                assert(told, option.name .. " may be anything")
+            end
+            local limit = limits[heading .. " " .. option.name]
+            for value, bad in pairs(limit and around(limit, option.name == "threads") or {}) do
+                local ok, message = pcall(call_with(example, give(value)))
+                local told = not ok and message:find(("%s = %.6g must %s"):format(option.name, value, limit), 1, true) ~= nil
+                assert(told == bad, ("%s = %g must %s: %s"):format(option.name, value, limit, tostring(message)))
+                limited = limited + 1
             end
             tested = tested + 1
         end
@@ -108,7 +150,7 @@ end
 
 os.remove(record)
 
-test("many options were tested", function() assert(tested > 140, tested) end)
+test("many options and limits were tested", function() assert(tested > 140 and limited > 350, limited) end)
 
 test("misspelt names are all reported at once, in an order that does not change from run to run", function()
     for _ = 1, 20 do
