@@ -44,12 +44,40 @@ class Values(AtHome):
         self.assertIn("  i      t, s  kind   theta, m  M, N  velocity, m/s\n  1   0.15719  turn", terminal.enter("run.events"))
         self.assertIn("steady: period 1 s", terminal.enter("block:steady{ M = excitation.harmonic{ amplitude = 9, frequency = 1 } }"))
 
+    def test_the_numbers_of_a_card_are_the_fields_of_its_names(self):
+        terminal = self.terminal(width=100)
+        terminal.enter("soft = system{ I = 2, k = 40, C = 0.3, Rd = 0.5, Re = 0.7, normal = 2 }")
+        terminal.enter("run = soft:simulate{ M = 1, theta0 = 1, velocity0 = 2, t_end = 6, dt = 0.02 }")
+        terminal.enter("noise = vector.normal{ n = #run, seed = 1, std = 1e-3 }")
+        terminal.enter("fit = identify{ data = { t = run.t, theta = run.theta + noise }, I = 2 }")
+        for name, least, form in [("soft", 9, "%.6g"), ("fit", 9, "%.6g"), ("run:energy().total", 5, "%.6g")]:
+            card = terminal.enter(name.replace(".total", ""))
+            rows = re.findall(r"^  (\w+) +(-?\d[\d.e-]*)(?: +\+- (\S+))?", card, re.MULTILINE)
+            self.assertGreaterEqual(len(rows), least, card)
+            for field, number, error in rows:
+                if field != "error":
+                    self.assertEqual(terminal.enter(f"('{form}'):format({name}.{field})").strip('"'), number, card)
+                if error:
+                    self.assertEqual(terminal.enter(f"('%.2g'):format({name}.std_error.{field})").strip('"'), error, card)
+
     def test_an_excitation_is_a_formula_and_its_breaks(self):
         terminal = self.terminal()
         shown = terminal.enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")
         self.assertEqual(shown.splitlines(), ["excitation  M(t) =", "    3 for 1.5 <= t < 1.7", "  - sin(2 t)",
                                               "  jumps or kinks at t = 1.5, 1.7"])
         self.assertIn("jumps or kinks at t = 0, 1, 2, 3, 4, 5, ...", terminal.enter("excitation.square{ period = 2 }"))
+        for term, formula in [("polynomial{ coefficients = { -1, -0.5, 2 }, at = 0.3 }", "    -1 - 0.5 (t - 0.3) + 2 (t - 0.3)^2"),
+                              ("ramp{ slope = 3, at = -1, duration = 2 }", "    3 (t + 1) for -1 <= t < 1, then 6"),
+                              ("ramp{ slope = -2, at = 1 }", "  - 2 (t - 1) for t >= 1"),
+                              ("harmonic{ amplitude = -2, omega = 3, phase = -0.4 }", "  - 2 sin(3 t - 0.4)"),
+                              ("gaussian{ amplitude = 3, at = 1, sigma = 0.2 }", "    3 exp(-((t - 1)/0.2)^2/2)"),
+                              ("exponential{ amplitude = 2, tau = 0.5, at = -0.5 }", "    2 exp(-(t + 0.5)/0.5) for t >= -0.5"),
+                              ("half_sine{ at = 1, width = 0.5 }", "    sin(pi (t - 1)/0.5) for 1 <= t < 1.5"),
+                              ("square{ period = 1.5, duty = 0.25, at = 1 }",
+                               "    1 square wave of period 1.5 that begins at 1, positive for 0.25 of it"),
+                              ("chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1 }",
+                               "    2 sine of frequency 1 ... 3 for 1 <= t < 5")]:
+            self.assertEqual(terminal.enter("excitation." + term).splitlines()[1], formula)
         self.assertIn("    function(t) return 2*t end", terminal.enter("excitation.scripted(function(t) return 2*t end)"))
 
     def test_a_run_its_columns_and_events(self):
