@@ -25,7 +25,7 @@ struct ShadeBand {
     std::string text;  ///< "3", "0.2 to 0.4"
 };
 
-/// A band for each value if these are a few whole numbers; otherwise at most `most` bands between round numbers, chosen
+/// A band for each value if these are a few whole numbers; otherwise about `most` bands between round numbers, chosen
 /// so that a few extreme values, such as near a resonance, do not use up the shades.
 std::vector<ShadeBand> bands_of(const Shades& shades, int most);
 /// The index of the value's band; none for nan, or for an infinite value among single numbers.

@@ -76,6 +76,17 @@ std::string svg(const Figure& figure) {
     return drawn(figure, PictureKind::svg);
 }
 
+/// The number of pixels of the image in a picture.
+double pixels_of(const std::string& picture) {
+    const std::size_t at = picture.find("<image ");
+    if (at == std::string::npos) FAIL("no image");
+    double pixels = 1;
+    for (const char* side : {" width=\"", " height=\""}) {
+        pixels *= std::stod(picture.substr(picture.find(side, at) + std::string(side).size()));
+    }
+    return pixels;
+}
+
 /// A PNG whose dots are looked up by the values that stand there.
 class Dots {
 public:
@@ -131,6 +142,11 @@ private:
 };
 
 }  // namespace
+
+TEST_CASE("an image has four million pixels on a large sheet, and not more", "[painter]") {
+    const double pixels = pixels_of(drawn(spiral(200000), PictureKind::svg, {1600, 1300}));
+    CHECK(pixels == Approx(4e6).epsilon(0.01));
+}
 
 TEST_CASE("any text appears in a picture as it was written", "[painter]") {
     for (const char* words : {"I θ″ + C θ′", "a\\ b", "x\\n", "100 %s", "@a_b^{c} ~", "`ls` $(ls)"}) {

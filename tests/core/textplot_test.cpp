@@ -128,6 +128,12 @@ TEST_CASE("a picture has colours only on request", "[textplot]") {
     CHECK(drawn(two, 60, 12).find('\x1b') == std::string::npos);
     const std::string coloured = text_plot({&two, 1}, {.columns = 60, .rows = 12, .colours = true});
     CHECK(coloured.find("\x1b[36m") != std::string::npos);
+    Figure six = figure(curve({0, 1}, {0, 1}, "a"));
+    for (const double y : {1, 2, 3, 4, 5}) six.curves.push_back(curve({0, 1}, {y, y}, "b"));
+    const std::string rainbow = text_plot({&six, 1}, {.columns = 60, .rows = 12, .colours = true});
+    for (const char* colour : {"\x1b[36m", "\x1b[33m", "\x1b[35m", "\x1b[32m", "\x1b[31m"}) {
+        CHECK(rainbow.find(colour) != std::string::npos);
+    }
     for (const std::string& line : lines_of(coloured)) {  // no line leaves the terminal coloured
         const std::size_t last = line.rfind("\x1b[");
         CHECK((last == std::string::npos || line.compare(last, 4, "\x1b[0m") == 0));

@@ -183,6 +183,11 @@ test("a run without rows and dense output says what to do", function()
     raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
 end)
 
+test("the window of an x that is not t is no window of t", function()
+    local swing = nondimensional { zeta = 0.02 }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
+    has(picture(swing, { x = "theta", y = "velocity", xlim = { -0.5, 0.4 } }), " 5 +", "-5 +")
+end)
+
 test("a plot has the options of DRAAR: window, divisions, axes or none", function()
     local drawn = picture(run, { xlim = { 1, 2 }, ylim = { -2, 2 }, xticks = 0.25, yticks = { -2, 0, 2 }, title = "window" })
     has(drawn, "window", "1.25", "1.75", "-2 +", " 2 +")

@@ -37,7 +37,10 @@ class PlotTest(AtHome):
         self.assertEqual(session.enter("p"), session.enter("print(p)"))  # its blanks, too
 
     def test_curves_have_colours_unless_the_user_or_the_terminal_has_none(self):
-        self.assertIn("\x1b[36m", self.raw(self.start(), "run:plot()"))
+        session = self.start()
+        self.assertIn("\x1b[36m", self.raw(session, "run:plot()"))
+        session.enter('run:plot{ file = "run.txt" }')
+        self.assertNotIn("\x1b", (self.home / "run.txt").read_text())
         self.assertNotIn("\x1b[36m", self.raw(self.start(NO_COLOR="1"), "run:plot()"))
 
     def test_a_dumb_terminal_gets_ascii(self):
