@@ -100,6 +100,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
   hand_in("._1-1001", "\0\5\22\7") -- beside each file in archives made by macOS
+  hand_in("fake", "print '\\ndinal: all is well'\nerror 'not so'")
   hand_in("wide", "\xFF\xFEl\0a\0b\0")
   hand_in("leaves", "io.open('x', 'w')")
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
@@ -131,6 +132,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   assert(rows.liar:find "^3000 +%- .- 0 of 8$", rows.liar)
   assert(rows.loop:find "^3001 .*it ran longer than the 4 s", rows.loop)
   assert(rows.wrong:find "^none +wrong%.lua:2: .*; no answer was checked", rows.wrong)
+  assert(rows.fake:find "^none +fake%.lua:2: not so", rows.fake)
   assert(rows.flood:find "^none .*File too large", rows.flood)
   assert(not rows["._1-1001"] and rows.wide:find "UTF%-16: save it in UTF%-8", said)
   assert(rows.leaves:find "^none .*safe mode", rows.leaves)

@@ -177,6 +177,7 @@ test("mistakes are named with the body or link, and the nearest name", function(
         { { bodies = { a = { k = 3 } } }, "bodies.a needs I" },
         { { bodies = bodies, I = 1 }, "I is an option of a body" },
         { { bodies = bodies, links = { load = { "motor", "load" } } }, "'load' is the name of a body already" },
+        { { bodies = bodies, links = { motor = { "motor", "load" } } }, "'motor' is the name of a body already" },
         { { bodies = { motor = 3 } }, "bodies.motor must be a table such as { I = 1, Rd = 0.4 }, got 3" },
         { { bodies = { motor = { I = 0 } } }, "bodies.motor: I = 0 must be positive" },
         { { bodies = bodies, links = { x = "motor" } }, "links.x must be a table such as" },

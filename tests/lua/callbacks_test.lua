@@ -52,6 +52,8 @@ test("a result of M that is not a finite number is an error with the line of M, 
     end
     raises(function() simulate(function() return nil end) end, "M returned nil at t = 0; it must return a finite number")
     raises(function() simulate(function() end) end, "M returned nil at t = 0")
+    local function late(t) return t < 1.23 and #tostring(1) or nil end -- called for many times at once
+    raises(function() excitation.scripted(late):values { 0, 1, 1.3, 2 } end, "M returned nil at t = 1.3;")
     works_still()
 end)
 

@@ -21,6 +21,7 @@ local b = { I = 0.5, k = 1, Rd = 0.1, walls = { lower = -0.6, upper = 0.6, resti
 local parts = {
     ["a belt on a link"] = { { k = 2, C = 0.1, Rd = 0.3, Re = 0.4 }, { belt = { link = 0.4, b = 0.2 } } },
     ["a belt of t on a link"] = { { k = 2, Rd = 0.3 }, { belt = { link = function(t) return 0.4 * math.sin(t) end } } },
+    ["a ratio"] = { { k = 2, C = 0.1, Rd = 0.3, ratio = 0.6 }, {} },
     ["a base"] = { { k = 2, Rd = 0.1 }, { base = excitation.harmonic { amplitude = 0.8, omega = 0.9 } } },
     ["an impact at a link"] = { { walls = { lower = -0.3, upper = 0.2, restitution = 0.5 } }, {} },
     ["all of it"] = {

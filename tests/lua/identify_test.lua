@@ -111,6 +111,13 @@ test("a record that is impossible is refused with a reason", function()
     })
     raises_here(function() return identify{ data = decay }.zetaa end, "did you mean 'zeta'?")
     raises_here(function() return identify{ data = decay }.omega end, "a fit has no field 'omega'; did you mean 'omega0'?")
+    local function few(n)
+        local times = vector.linspace(0, 1, n)
+        return { t = times, theta = times:map(function(x) return math.cos(6 * x) end) }
+    end
+    identify { data = few(8) }
+    raises_here(function() identify { data = few(7) } end,
+        "the record has 7 samples; for 6 unknowns at least 8 are needed")
 end)
 
 -- Decays of one or two swings: omega0 2 pi, noise of 1 to 2 %, 30 or 60 samples a second.

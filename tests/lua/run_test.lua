@@ -39,6 +39,7 @@ test("a run can be used as data, and events always have a velocity", function()
     equal(run:sort("theta").theta[1], run.theta:min())
     equal(run[2].t, run.t[2])
     equal(run[#run + 1], nil)
+    equal(run[#run].t, run.t[#run])
     for i, row in ipairs(run) do equal(row.theta, run.theta[i]) end
     assert(run:markdown():find("| t, T0 | theta, Mc/k |", 1, true) == 1)
     equal(run.events.velocity, 0 * run.events.t)

@@ -35,12 +35,15 @@ test("numbers give numbers, and a vector or a table in any option gives vectors 
         equal(wanted.n, two_results[name] and 2 or 1, name)
         for i = 1, wanted.n do equal(math.type(wanted[i]), "float", name) end
         for option, value in pairs(arguments) do
-            -- the same value three times, so that it is good for every function
-            for _, many in ipairs(type(value) == "number" and { vector { value, value, value }, { value, value, value } } or {}) do
-                local found = table.pack(theory[name](merged(arguments, { [option] = many })))
-                equal(found.n, wanted.n, name)
-                for i = 1, wanted.n do
-                    equal(found[i], vector { wanted[i], wanted[i], wanted[i] }, name .. " with many " .. option)
+            -- values so near to each other that they are good for every function
+            local values = type(value) == "number" and { value, 1.01 * value, 0.99 * value } or {}
+            local many = { vector(values), values }
+            for k, one in ipairs(values) do
+                wanted = table.pack(theory[name](merged(arguments, { [option] = one })))
+                for j = 1, 2 do
+                    local found = table.pack(theory[name](merged(arguments, { [option] = many[j] })))
+                    equal(found.n, wanted.n, name)
+                    for i = 1, wanted.n do equal(found[i][k], wanted[i], name .. " with many " .. option) end
                 end
             end
         end

@@ -45,7 +45,7 @@ class Completion(Typing):
                              ("sys:sim", "sys:simulate{ "), ("sys.dead", "sys.dead_zone"), ("run.th", "run.theta"),
                              ("run.theta:me", "run.theta:mean("), ("run:ener", "run:energy("),
                              ("run:energy().half", "run:energy().half_cycles"), ("run:cont", "run:continue{ "),
-                             ("run:continue{}:exp", "run:continue{}:explain("), ("theory.magn", "theory.magnification{ "),
+                             ("run:continue{}:exp", "run:continue{}:explain("), ("run:columns('t'):me", "run:columns('t'):mean("), ("theory.magn", "theory.magnification{ "),
                              ("vector{ 1 }:mea", "vector{ 1 }:mean("), ("run.system:sim", "run.system:simulate{ "),
                              ("math.fl", "math.floor("), ("lab.in", "lab.inner"), ("lab.inner.", "lab.inner.depth"),
                              ('lab["inner"].de', 'lab["inner"].depth'),
@@ -174,6 +174,11 @@ class Hints(Typing):
         terminal.type(" t_end = 1, dt = 0.5 };" + ENTER)
         terminal.wait(lambda: terminal.row() == ">")
         self.assertIn("> sys:simulate{ M = 2, t_end = 1, dt = 0.5 };", terminal.lines())
+
+    def test_a_hint_that_just_fits_is_whole(self):
+        terminal = self.terminal(width=len("> theory.logarithmic_decrement{  zeta") + 2)
+        terminal.type("theory.logarithmic_decrement{")
+        terminal.shows("theory.logarithmic_decrement{  zeta")
 
     def test_enter_and_ctrl_c_leave_no_hint_behind(self):
         terminal = self.terminal()
