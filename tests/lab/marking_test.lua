@@ -100,7 +100,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   hand_in("flood", "while true do print(('x'):rep(1e5)) end")
   hand_in("wrong", "lab.number(3002)\ncheck('1a', 3")
   hand_in("._1-1001", "\0\5\22\7") -- beside each file in archives made by macOS
-  hand_in("fake", "print '\\ndinal: all is well'\nerror 'not so'")
+  hand_in("fake", "io.stderr:write '\\ndinal: all is well\\n'\nerror 'not so'")
   hand_in("wide", "\xFF\xFEl\0a\0b\0")
   hand_in("leaves", "io.open('x', 'w')")
   hand_in("-e", "lab.number(3003)\ncheck('1a', 1)") -- not an option
