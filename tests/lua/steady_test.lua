@@ -10,6 +10,11 @@ local function late(run, from)
     return (events.theta:max() - events.theta:min()) / 2, #events:filter(function(e) return e.kind == "stick" end)
 end
 
+test("a load that depends on t by a ten-millionth needs a period as any other does", function()
+    raises_here(function() nondimensional { zeta = 0.1 }:steady { M = function(t, theta) return 1 - 0.1 * theta + 1e-7 * math.sin(t) end } end,
+        "the period of M is not known; give it with period = ...")
+end)
+
 test("a steady answer has all its members", function()
     local s = sliding:steady{ M = harmonic(1.35) }
     equal(s.status, "steady")
