@@ -13,7 +13,7 @@ local needed = run.lever.torque
 print(string.format("what swings the lever needs between %.2f and %.2f", needed:min(), needed:max()))
 
 --[[ prints
-2 bodies, 1001 rows, t 0 … 30; 58 events (1 turn, 28 sticks, 29 slips); moving at the end
+2 bodies, 1001 rows, t 0 … 30; 57 events (28 sticks, 29 slips); moving at the end
 the pawl catches 28 times; the wheel turns at 1.800 at most, as the lever does, and has turned 7.9 times round
-what swings the lever needs between -0.02 and 21.68
+what swings the lever needs between -0.02 and 10.12
 ]]

@@ -81,7 +81,7 @@ test("a belt or a moved body takes along what a freewheel keeps from falling beh
             links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }
         local run = rig:simulate { t_end = 1, dt = 1 }
         near(run.load.velocity[2], v > 0 and 2 or -0.3, 1e-12)
-        closes(run)
+        equal(closes(run).total.impacts, 0.0)
     end
 end)
 

@@ -82,7 +82,7 @@ private:
     [[nodiscard]] double rounding_of_slip(std::size_t joint, Because why) const;
     void let_slide(std::size_t slider, model::Motion way);
     bool turn_sliders();
-    std::vector<double> catch_freewheels();
+    std::vector<double> catch_freewheels(bool at_start);
     double stop_together(const std::vector<char>& joints);
     bool press_stops();
     void press(std::size_t joint, int side);

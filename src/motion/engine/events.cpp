@@ -190,7 +190,7 @@ bool Engine::open_and_close() {
 /// Updates all contacts after a jump of velocities, caused by an impact at the joint `at`, a user's action or a belt.
 bool Engine::restart_contacts(Because why, std::size_t at) {
     open_and_close();
-    const std::vector<double> caught = catch_freewheels();
+    const std::vector<double> caught = catch_freewheels(false);
     press_stops();
     turn_sliders();
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -305,9 +305,9 @@ bool Engine::turn_sliders() {
 
 /// A freewheel that is thrown backward stops, and so does a joint that leans on a wall and is thrown into it, the
 /// fastest first. If a joint is thrown back once more, all that have stopped since then stop together, as they would
-/// after ever smaller impacts of one after the other. Returns the rounding of the slip of each joint; empty if there is
-/// no freewheel.
-std::vector<double> Engine::catch_freewheels() {
+/// after ever smaller impacts of one after the other. The energy of a system with a moved body begins after what this
+/// changes at the start. Returns the rounding of the slip of each joint; empty if there is no freewheel.
+std::vector<double> Engine::catch_freewheels(bool at_start) {
     bool any = false;
     for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
     if (!any) return {};
@@ -338,7 +338,7 @@ std::vector<double> Engine::catch_freewheels() {
             lost = (before - after) * (before + after) / thrown.lightness / 2;
             stopped[worst] = 1;
         }
-        recorder_->add_jump(now_.t.hi, worst, {.impacts = lost});
+        if (!at_start || !problem_.system.has_moved()) recorder_->add_jump(now_.t.hi, worst, {.impacts = lost});
     }
     return rounded;
 }

@@ -103,7 +103,7 @@ void Engine::begin() {
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
         // A belt or a moved body takes along from the start what a freewheel keeps from falling behind.
-        const std::vector<double> caught = catch_freewheels();
+        const std::vector<double> caught = catch_freewheels(true);
         press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (!now_.rubs(j)) continue;
