@@ -232,4 +232,24 @@ test("friction that falls steeply with the speed stops a fast mass where its dec
     end
 end)
 
+-- Each period the mass slips a little less beyond its limit, until the rest is rounding.
+test("a mass that a pulse moves less each period comes to hold, alone and beside others", function()
+    local T, M0 = 1.6661962663265, 0.9242939044131
+    local M = function(t) return t % T < 0.37 * T and M0 or -M0 / 2 end
+    local run = system{ I = 2, k = 9, C = 0.35, friction = friction.stribeck{ Rd = 0.52, Re = 0.81, speed = 0.22 } }
+        :simulate{ M = M, t_end = 400 * T }
+    equal(run.t_end, 400 * T)
+    near(run.theta[#run], (M0 - 0.81) / 9, 1e-15)
+    assert(run.events[#run.events].t < 60)
+
+    local body = { I = 1.6578576852002695, k = 4.929986288115886, C = 0.23996891000842135,
+        friction = friction.stribeck{ Rd = 0.5854384602164684, Re = 0.8046054384790812, speed = 0.4464779651828179 } }
+    local rig = system{ bodies = { a = body, b = { I = 1.910786644260484, C = 0.06226573933050629 } },
+        links = { l = { "a", "b", k = 1.845010522548859, C = 0.2403994963512761, Rd = 0.5014027380920488, Re = 0.6990133320033394 } } }
+    local T, M0 = 1.3708150554769, 1.0030911740663
+    run = rig:simulate{ M = { a = function(t) return t % T < 0.37 * T and M0 or -M0 / 2 end }, t_end = 400 * T }
+    equal(run.t_end, 400 * T)
+    near(M0 - 4.929986288115886 * run.a.theta[#run] - 0.8046054384790812, 0, 1e-9)
+end)
+
 finish()

@@ -128,6 +128,8 @@ void Guards::watch_slip(std::size_t joint) {
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
+    // A joint that was released by less than the rounding of its torques does not move at all.
+    if (how.leaving && greatest(slips) == 0) zero = -1;
     // A zero beyond the end by no more than the rounding of the time is at the end.
     const double late = segment_.to_the_end ? 64 * rounding * std::fabs(segment_.end) / segment_.h : 0;
     if (!zero && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;
