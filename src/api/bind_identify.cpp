@@ -1325,10 +1325,13 @@ std::vector<std::string> silent_names(const FitAnswer& fit) {
     return names;
 }
 
-/// The errors that are not withheld.
+/// The errors that are not withheld, of values that the record determines.
 std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
     auto errors = fit.errors;
-    std::erase_if(errors, [](const auto& error) { return std::isnan(error.second); });
+    std::erase_if(errors, [&fit](const auto& error) {
+        return std::isnan(error.second) || std::any_of(fit.silent.begin(), fit.silent.end(),
+                                                       [&error](const auto& one) { return one.first == error.first; });
+    });
     return errors;
 }
 
@@ -1355,7 +1358,8 @@ constexpr lua::Member fit_members[] = {
       "The standard errors by name: if the model is right, the truth lies within two of them in 19 of 20 records. Given "
       "values have 0. They are wider if neighbouring residuals are alike, or if the residual hints at something that the "
       "model lacks (another law of friction, a nonlinear spring, a drifting zero): by how far that would move each value. "
-      "They are nil if the model is so wrong that they would mean nothing (fit.misfit). What the record cannot show they do "
+      "They are nil if the model is so wrong that they would mean nothing (fit.misfit), and of the names in fit.silent. "
+      "What the record cannot show they do "
       "not contain: friction that falls evenly with the speed looks like more Rd and less C.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_value<FitHandle, &FitAnswer::cautious>,

@@ -14,6 +14,7 @@ test("an exact record identifies the system without a guess", function()
         near(fit.velocity0, 1, 1e-6)
         near(fit.offset, 0, 1e-7)
         equal(table.concat(fit.silent), "Re")
+        equal(fit.std_error.Re, nil)  -- 0 would claim that it is known
     end
 end)
 

@@ -240,7 +240,7 @@ function support.judge()
     local inside, all, square = 0, 0, 0
     return function(fit, truth)
         for name, true_value in pairs(truth) do
-            if fit.std_error[name] > 0 then
+            if (fit.std_error[name] or 0) > 0 then
                 local z = (fit[name] - true_value) / fit.std_error[name]
                 inside, all, square = inside + (math.abs(z) <= 1.96 and 1 or 0), all + 1, square + z * z
             end
