@@ -241,14 +241,12 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
         set_ans(L, base + 1);
     }
     const std::string element = single && lua_isnil(L, base + 1) ? element_notice(L, chunk) : "";
-    const std::string greatest = single ? greatest_notice(L, base + 1, chunk) : "";
     if (!chunk.silent) {
         show_by(L, show_values, base);
     }
     if (single) {
         say_notice(name_notice(L, chunk));
         say_notice(element);
-        say_notice(greatest);
     }
 }
 
