@@ -55,8 +55,8 @@ end
 
 -- Three limits for the step, one of them true.
 local plain = nondimensional{ zeta = 0.02387 }
-for _, rule in ipairs{ "report", "corrected", "rk4" } do
-  print(string.format("%-10s h < %.4f T0", rule, theory.step_limit{ system = plain, rule = rule, theta0 = 1 }))
+for _, rule in ipairs{ { "report", plain.zeta }, { "corrected", plain.zeta/math.pi }, { "rk4", theory.step_limit{ system = plain } } } do
+  print(string.format("%-10s h < %.4f T0", rule[1], rule[2]))
 end
 
 --[[ prints

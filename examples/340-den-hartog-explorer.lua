@@ -27,9 +27,9 @@ for _, row in ipairs(map) do
 end
 print(string.format("%d points agree with the boundary, %d are too near to it to say", agree, beside))
 
--- Pictures: the plane with lines of equal amplitude, and the curves of the report's figures 5a and 5b: dotted where the
+-- Pictures: the plane, and the curves of the report's figures 5a and 5b: dotted where the
 -- mass stops, with the boundary, and what becomes of one of them when friction is taken for viscous.
-map:plot{ x = "r", y = "g", z = "A", contours = { 0.5, 1, 2 }, zlim = { 0, 3 }, xlabel = "r", ylabel = "Rd/(k a)",
+map:plot{ x = "r", y = "g", z = "A", zlim = { 0, 3 }, xlabel = "r", ylabel = "Rd/(k a)",
           title = "amplitude", file = "figamplitude.svg" }
 local none = 0/0
 local amplitudes = { xlabel = "r", ylabel = "amplitude", ylim = { 0, 3 }, file = "fig5a.svg" }

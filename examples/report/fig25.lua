@@ -29,8 +29,8 @@ local damped_lag = math.deg(theory.phase_lag{ r = r, zeta = 0.242 })
 fig:line("lag in degrees, zeta = 0.242", lag(old_viscous), lag(viscous), damped_lag)
 
 -- the damper that takes as much energy as dry friction, by the amplitude one believes in
-local by_formula = theory.equivalent_zeta{ friction_ratio = 0.5, r = r, magnification = linear }
-local by_truth = theory.equivalent_zeta{ friction_ratio = 0.5, r = r, magnification = amplitude }
+local function equivalent_zeta(magnification) return 2*0.5/(math.pi*r*magnification) end
+local by_formula, by_truth = equivalent_zeta(linear), equivalent_zeta(amplitude)
 local better = theory.magnification{ r = r, zeta = by_truth }
 fig:head("linearised", "exact")
 fig:line("amplitude", linear, amplitude)

@@ -8,9 +8,8 @@ local old, run, sys = case.run{ zeta = 0.119, gamma = 0.418, r = 1, theta0 = 1, 
 local amplitude = theory.den_hartog{ r = 1, friction_ratio = 0.418, zeta = 0.119 } -- without stops, so it is exact
 fig:head("1989", "true motion", "closed form")
 fig:line("amplitude", case.row_amplitude(old, 100), case.amplitude(run), amplitude)
--- what dry friction alone would be worth as a viscous damper at this amplitude
-fig:line("dry friction as a zeta", "",
-  theory.equivalent_zeta{ friction_ratio = 0.418, r = 1, magnification = amplitude })
+-- what dry friction alone would be worth as a viscous damper at this amplitude: 2 gamma/(pi r Phi)
+fig:line("dry friction as a zeta", "", 2*0.418/(math.pi*amplitude))
 fig:say(tostring(run))
 
 local linear = theory.linearised{ r = 1, friction_ratio = 0.418, zeta = 0.119 }

@@ -11,6 +11,7 @@
 #include "analysis/stretches.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
+#include "motion/integrators.hpp"
 
 namespace dinal::analysis {
 namespace {

@@ -45,7 +45,6 @@ inline constexpr text::Option data_plot_options[] = {
      .meaning = "name of an additional curve, or a list: the data of a response have \"jumps\" and, if it "
                 "exists, \"linearised\" and \"den_hartog\""},
     {.name = "zlim", .meaning = "{ from, to }: values beyond get the first or last shade of the map"},
-    {.name = "contours", .meaning = "a list of values of z whose lines are drawn on the map"},
     {.name = "style",
      .meaning = "style of the curves; numbers that are not finite are gaps",
      .filled = text::fills<&plots::Curve::style>,
@@ -670,7 +669,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     return shades;
 }
 
-/// A map of z over x and y, with the options zlim and contours. Fails unless x and y form a grid.
+/// A map of z over x and y, with the option zlim. Fails unless x and y form a grid.
 plots::Figure figure_of_map(const lua::Options& options, const std::array<std::string, 3>& names,
                             const std::array<plots::Numbers, 3>& columns) {
     plots::Shades shades = shades_of(options, names, columns);
@@ -684,18 +683,6 @@ plots::Figure figure_of_map(const lua::Options& options, const std::array<std::s
     plots::Figure figure;
     figure.x.label = names[0];
     figure.y.label = names[1];
-    constexpr std::size_t most_contours = 20;
-    const std::vector<double> levels = options.numbers("contours");
-    if (levels.size() > most_contours) {
-        options.fail("contours",
-                     fmt::format("{} contours are too many, {} can be told apart", levels.size(), most_contours));
-    }
-    for (const double level : levels) {
-        plots::Curve line = plots::contour(shades, level);
-        line.label = fmt::format("{} = {:.6g}", names[2], level);
-        line.colour = vermilion;
-        figure.curves.push_back(std::move(line));
-    }
     figure.shades = std::make_shared<const plots::Shades>(std::move(shades));
     return figure;
 }
@@ -991,11 +978,7 @@ void add_overlays(lua_State* L, const lua::Options& options, const Data& data, c
 }
 
 int plot_curves(lua_State* L, const lua::Options& options, const Data& data, DrawnColumns columns) {
-    for (const char* option : {"zlim", "contours"}) {
-        if (!options.numbers(option).empty()) {
-            options.fail(option, fmt::format("{} is for maps: name a column z, too", option));
-        }
-    }
+    if (options.has("zlim")) options.fail("zlim", "zlim is for maps: name a column z, too");
     const std::string& x = columns.x;
     std::vector<std::string>& y = columns.y;
     plots::Figure figure;

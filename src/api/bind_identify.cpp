@@ -427,14 +427,15 @@ public:
             for (std::size_t j = 0; j < columns_.size(); ++j) {
                 if (std::isnan(columns_[j].numbers[row])) continue;
                 all.push_back(columns_[j].numbers[row] / columns_[j].size);
-                question.columns.push_back(static_cast<int>(j));
-                question.times.push_back(t_[row]);
+                column_of_.push_back(static_cast<int>(j));
+                time_of_.push_back(t_[row]);
             }
             known_until_.push_back(static_cast<Eigen::Index>(all.size()));
         }
         if (all.size() < free_.size() + 4) {
             options_.fail({fmt::format("{} numbers are too few to fit {} parameters", all.size(), free_.size())});
         }
+        question.columns = column_of_, question.times = time_of_;
         question.measured = Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
         constexpr double first = 2.2;
         double length = first * swing_;
@@ -827,17 +828,8 @@ private:
     /// Possible missing torques at joints that are measured or have a fitted parameter, and drifts of measured zeros.
     std::vector<analysis::Structure> structures(const Eigen::VectorXd& p, double noise, bool is_white) {
         std::vector<analysis::Structure> found;
-        std::vector<double> times;
-        std::vector<int> columns;
-        for (std::size_t row = 0; row < t_.size(); ++row) {
-            for (std::size_t j = 0; j < columns_.size(); ++j) {
-                if (std::isnan(columns_[j].numbers[row])) continue;
-                times.push_back(t_[row]);
-                columns.push_back(static_cast<int>(j));
-            }
-        }
         for (std::size_t j = 0; j < columns_.size(); ++j) {
-            found.push_back(analysis::drift(times, columns, static_cast<int>(j), is_white));
+            found.push_back(analysis::drift(time_of_, column_of_, static_cast<int>(j), is_white));
         }
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
@@ -882,13 +874,13 @@ private:
     void push_excitation() {
         options_.push("M");
         if (!added_) return;
-        if (!system_.named) {
+        const auto push_sum = [this] {
             model::Excitation M = added_->torque;
             if (!lua_isnil(L_, -1)) M = to_excitation(L_, -1, "identify: M", "M") + M;
             lua_pop(L_, 1);
             lua::push<model::Excitation>(L_, M);
-            return;
-        }
+        };
+        if (!system_.named) return push_sum();
         const int old = lua_gettop(L_);
         lua_newtable(L_);
         for (lua_pushnil(L_); lua_istable(L_, old) && lua_next(L_, old) != 0;) {
@@ -899,10 +891,7 @@ private:
         lua_settop(L_, old + 1);
         const char* name = system_.joints[added_->joint].name.c_str();
         lua_getfield(L_, -1, name);
-        model::Excitation M = added_->torque;
-        if (!lua_isnil(L_, -1)) M = to_excitation(L_, -1, "identify: M", "M") + M;
-        lua_pop(L_, 1);
-        lua::push<model::Excitation>(L_, M);
+        push_sum();
         lua_setfield(L_, -2, name);
         lua_remove(L_, old);
     }
@@ -1026,6 +1015,8 @@ private:
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
     std::vector<double> t_;
+    std::vector<double> time_of_;                                     ///< of each measured value,
+    std::vector<int> column_of_;                                      ///< and its column
     std::vector<Eigen::Index> known_until_;                           ///< number of measured values up to each row
     std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< given values, by body or link
     double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;

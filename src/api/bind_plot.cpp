@@ -28,6 +28,7 @@
 #include "plots/run_figure.hpp"
 #include "plots/svg_words.hpp"
 #include "terminal/display.hpp"
+#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

@@ -97,14 +97,6 @@ constexpr Call identify{"theory.identify", "theory.identify{ X0 = 1, X1 = -0.7, 
 constexpr Option r_and_zeta[] = {r, zeta};
 constexpr Call magnification{"theory.magnification", "theory.magnification{ r = 0.5, zeta = 0.1 }", r_and_zeta};
 constexpr Call phase_lag{"theory.phase_lag", "theory.phase_lag{ r = 0.5, zeta = 0.1 }", r_and_zeta};
-constexpr Option equivalent_zeta_options[] = {
-    friction_ratio,
-    {"r", "", needed, text::positive, r.meaning},
-    {"magnification", "", needed, text::positive, "the amplitude in units of M0/k"}};
-constexpr Call equivalent_zeta{"theory.equivalent_zeta",
-                               "theory.equivalent_zeta{ friction_ratio = 0.2, r = 0.5, magnification = 1.3 }",
-                               equivalent_zeta_options};
-
 constexpr Option linearised_options[] = {r, friction_ratio, zeta};
 constexpr Call linearised{"theory.linearised", "theory.linearised{ r = 0.5, friction_ratio = 0.1 }",
                           linearised_options};
@@ -121,21 +113,8 @@ constexpr Option stop_boundary_options[] = {
 constexpr Call stop_boundary{"theory.stop_boundary", "theory.stop_boundary{ r = 0.75, zeta = 0.1 }",
                              stop_boundary_options};
 
-struct StepRule {
-    enum class Name { rk4, report, corrected };
-    Name rule = Name::rk4;
-};
-constexpr const char* rule_names[] = {"rk4", "report", "corrected"};
-constexpr Option step_limit_options[] = {
-    system,
-    {.name = "rule",
-     .meaning = "one of the three rules",
-     .filled = text::fills<&StepRule::rule>,
-     .choices = rule_names},
-    theta0,
-    velocity0,
-    {"Mc", "torque", text::its_own, text::not_zero, "characteristic torque; by default that of the free motion"}};
-constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys, rule = \"rk4\" }", step_limit_options};
+constexpr Option step_limit_options[] = {system};
+constexpr Call step_limit{"theory.step_limit", "theory.step_limit{ system = sys }", step_limit_options};
 
 }  // namespace theory_options
 
@@ -194,9 +173,6 @@ public:
         return read.ptr != otherwise ? Quantity(number) : quantity(otherwise);
     }
 
-    Quantity quantity(std::string_view name, Quantity otherwise) {
-        return options_.has(name) ? given(name) : std::move(otherwise);
-    }
     /// All options, for calls with numbers only.
     template <std::size_t n>
     std::array<Quantity, n> quantities() {
@@ -418,24 +394,9 @@ double stop_boundary(double r, double zeta, double factor) {
 }
 
 int step_limit(lua_State* L) {
-    TheoryArguments arguments(L, options::step_limit);
-    const model::Oscillator system = asked_system(arguments.options());
-    options::StepRule asked;
-    arguments.options().fill(asked);
-    const Quantity theta0 = arguments.quantity("theta0");
-    const Quantity velocity0 = arguments.quantity("velocity0");
-    const bool own_torque = !arguments.options().has("Mc");
-    const Quantity Mc = arguments.quantity("Mc", Quantity(0));
-    return arguments.push_result([&](std::size_t i) {
-        if (asked.rule == options::StepRule::Name::rk4) return motion::rk4::stability_limit(system);
-        const model::State initial{theta0[i], velocity0[i]};
-        if (system.kinetic_friction() > 0 && initial.theta == 0 && initial.velocity == 0) {
-            arguments.options().fail(
-                "theta0", "theta0 or velocity0 is needed, because this rule divides by the greatest velocity");
-        }
-        if (asked.rule == options::StepRule::Name::corrected) return euler_step_limit(system, initial);
-        return printed_step_limit(system, initial, own_torque ? system.characteristic_torque(initial) : Mc[i]);
-    });
+    const lua::Options table(L, 1, options::step_limit);
+    lua_pushnumber(L, motion::rk4::stability_limit(asked_system(table)));
+    return 1;
 }
 
 }  // namespace theory_functions
@@ -502,13 +463,6 @@ constexpr lua::Member theory_module_members[] = {
         "theory.phase_lag{ OPTIONS } -> number or vector",
         "The lag of that motion behind its load, rad: atan2(2 zeta r, 1 - r^2), from 0 to pi; pi/2 at r = 1.",
         "print(theory.phase_lag{ r = { 0.5, 1, 2 }, zeta = 0.1 })  --> vector{ 0.132552, 1.5708, 3.00904 }"),
-    formula<o::equivalent_zeta, theory::equivalent_damping_ratio>(
-        "theory.equivalent_zeta{ OPTIONS } -> number or vector",
-        "The viscous damping ratio that dissipates as much energy in a cycle as dry friction: 2 gamma/(pi r Phi), with "
-        "gamma = Rd/M0 and Phi the amplitude in units of M0/k.",
-        "phi = theory.linearised{ r = 1.35, friction_ratio = 0.5 }\n"
-        "print(string.format(\"%.4f\", theory.equivalent_zeta{ friction_ratio = 0.5, r = 1.35, magnification = phi }))\n"
-        "--> 0.2515"),
     formula<o::linearised, f::linearised>(
         "theory.linearised{ OPTIONS } -> amplitude, lag",
         "The steady motion with dry friction replaced by its equivalent damping, added to zeta: amplitude in units of "
@@ -541,16 +495,9 @@ constexpr lua::Member theory_module_members[] = {
         "has no stops; r is 0 or from 0.0001 to 1e6.",
         "print(theory.stop_boundary{ r = { 0.5, 1, 3 } })  --> vector{ 0.333333, 0.785398, 0.5625 }"),
     row<o::step_limit, f::step_limit>(
-        "theory.step_limit{ OPTIONS } -> number or vector",
-        "The greatest step (time units) by one of three rules: \"rk4\", beyond which integrator.rk4 amplifies a free "
-        "motion; \"report\", deltatmax of the program of 1989, T0 (zeta + gamma/VMAX) with gamma = Rd/|Mc| and VMAX the "
-        "greatest velocity of the free motion, Mc that of a free motion unless given; \"corrected\", what its argument "
-        "gives without slips, T0 zeta/pi + Rd/(k VMAX). Only the first one is a limit.",
-        "sys = nondimensional{ zeta = 0.02387 }\n"
-        "print(string.format(\"%.4f %.4f %.4f\", theory.step_limit{ system = sys },\n"
-        "    theory.step_limit{ system = sys, rule = \"report\" }, "
-        "theory.step_limit{ system = sys, rule = \"corrected\" }))\n"
-        "--> 0.4573 0.0239 0.0076"),
+        "theory.step_limit{ OPTIONS } -> number",
+        "The greatest step (time units), beyond which integrator.rk4 amplifies a free motion.",
+        "print(string.format(\"%.4f\", theory.step_limit{ system = nondimensional{ zeta = 0.02387 } }))  --> 0.4573"),
 };
 
 }  // namespace

@@ -238,9 +238,10 @@ public:
         }
         choose();
         function_ = options.has("at");
-        if (!system_->is_plain() && !function_) {
-            options.fail("at", "a system with names, elastic walls or a friction that varies needs at, such as " +
-                                   std::string(at_call.example));
+        if (system_->named && !function_) {
+            options.fail("at",
+                         "a system with named bodies needs at, such as "
+                         "at = function(p) return { M = { load = excitation.harmonic{ frequency = p.f } } } end");
         }
         if (function_) place_ = push_function(L, options, "at");
         if (function_) {
@@ -248,7 +249,7 @@ public:
         } else {
             check_harmonic();
         }
-        if (over_frequency() && !function_ && !is_plane() && asked_.between) add_resonance();
+        if (over_frequency() && harmonic() && !is_plane() && asked_.between && system_->is_plain()) add_resonance();
     }
 
     /// Returns whether there are two parameters: the second is varied at each value of the first.
@@ -323,8 +324,12 @@ private:
         const double frequency = frequency_at(x);
         auto M = options_.value_or_fail(model::Excitation::make(
             model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
-        auto question = options_.value_or_fail(analysis::SteadyQuestion::of(system_, {std::move(M), start()}));
-        question.repeats = {0, 1 / frequency};
+        const bool plain = system_->is_plain();
+        auto question = options_.value_or_fail(analysis::SteadyQuestion::of(
+            system_, {std::move(M), start()}, plain ? std::nullopt : std::optional(joint_)));
+        question.repeats =
+            plain ? analysis::Repetition{0, 1 / frequency} : repetition_at(x, options_, question, 1 / frequency);
+        if (!plain) question.settles = settles_or_fail(options_, question);
         return question;
     }
 
@@ -572,7 +577,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
     }
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
-    if (call.harmonic() && !call.is_plane()) {
+    if (call.harmonic() && !call.is_plane() && call.system().is_plain()) {
         const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
         const HarmonicSweep sweep{
             .system = oscillator_of(call.system()).value(),

@@ -212,11 +212,14 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
     return text::did_you_mean_one_of(owners);
 }
 
-/// The likely meanings of an undefined global name.
-std::string meant_by(lua_State* L, std::string_view name, const std::vector<std::string>& names, Use use = Use::any) {
+/// The likely meanings of an undefined name, among these variables and the globals.
+std::string meant_by(lua_State* L, std::string_view name, std::vector<std::string> names, Use use = Use::any) {
     std::string hint = foreign_tokens(name, Seen::unknown);
     hint = hint.empty() ? qualified(L, name, use) : hint;
     hint = hint.empty() ? field_of_variable(L, name) : hint;
+    lua_pushglobaltable(L);
+    add_keys(L, names);
+    lua_pop(L, 1);
     return hint.empty() ? text::did_you_mean(name, names, text::Likeness::of_letters) : hint;
 }
 
@@ -289,11 +292,7 @@ std::vector<std::string> member_names(lua_State* L) {
 }
 
 std::string similar_global(lua_State* L, std::string_view name) {
-    std::vector<std::string> names;
-    lua_pushglobaltable(L);
-    add_keys(L, names);
-    lua_pop(L, 1);
-    return meant_by(L, name, names);
+    return meant_by(L, name, {});
 }
 
 std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
@@ -350,11 +349,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
         return {std::move(missing.end_of_sentence), std::move(missing.culprit)};
     }
     if (message.type == "nil" && message.kind == "global") {
-        std::vector<std::string> names = variables(L, frame);
-        lua_pushglobaltable(L);
-        add_keys(L, names);
-        lua_pop(L, 1);
-        return {meant_by(L, message.name, names, message.calculates ? Use::as_number : Use::any)};
+        return {meant_by(L, message.name, variables(L, frame), message.calculates ? Use::as_number : Use::any)};
     }
     if (message.type == "nil" && (message.kind == "field" || message.kind == "method")) {
         return {text::did_you_mean(message.name, siblings(L, frame, message.name, statement))};

@@ -23,7 +23,6 @@
 #include "lua/worker_state.hpp"
 #include "plots/svg_words.hpp"
 #include "source/value_text.hpp"
-#include "text/characters.hpp"
 #include "text/html.hpp"
 #include "text/sentences.hpp"
 #include "text/words.hpp"
@@ -99,66 +98,15 @@ struct HtmlWriter {
     void operator()(const DataHandle& item) { page += html_of(*item, most_table_rows); }
 };
 
-/// A fence of more backquotes than any line has.
-std::string fence(std::string_view text) {
-    std::string marks = "```";
-    while (text.find(marks) != std::string_view::npos) marks += '`';
-    return marks;
-}
-
-/// The text with newlines and tabs, without other control characters.
-std::string lines_shown(std::string_view text) {
-    std::string all;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find_first_of("\n\t"), text.size());
-        all += text::displayable(text.substr(0, end));
-        if (end < text.size()) all += text[end];
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
-    return all;
-}
-
-/// Escapes Markdown markup in a line.
-std::string plain_markdown(std::string_view text) {
-    return text::markdown(lines_shown(text), "\\`*_{}[]#|");
-}
-
-struct MarkdownWriter {
-    MarkdownReport report;
-    const std::string& stem;
-
-    void operator()(const ReportHeading& item) {
-        report.text += "## " + plain_markdown(text::displayable(item.text)) + "\n\n";
-    }
-    void operator()(const ReportText& item) {
-        for (const std::string_view one : paragraphs(item.text)) report.text += plain_markdown(one) + "\n\n";
-    }
-    void operator()(const ReportLines& item) {
-        const std::string marks = fence(item.text);
-        report.text += (item.caption.empty() ? "" : plain_markdown(item.caption) + ":\n\n") + marks + "\n" +
-                       lines_shown(item.text) + "\n" + marks + "\n\n";
-    }
-    void operator()(const ReportPicture& item) {
-        if (item.svg.empty()) {
-            (*this)(ReportLines{item.text});
-            return;
-        }
-        const std::string name = fmt::format("{}-{}.svg", stem, report.pictures.size() + 1);
-        report.pictures.emplace_back(name, item.svg);
-        report.text += fmt::format("![{}]({})\n\n", plain_markdown(item.title), name.substr(name.rfind('/') + 1));
-    }
-    void operator()(const DataHandle& item) { report.text += markdown_of(*item) + "\n\n"; }
-};
-
 }  // namespace
 
 ReportPicture drawn(const Picture& picture) {
     auto svg = svg_of(picture);
-    return {svg ? std::move(svg).value() : "", text_of_picture(picture), plots::title_of(picture.figures)};
+    return {svg ? std::move(svg).value() : "", text_of_picture(picture)};
 }
 
 ReportPicture drawn(const Animation& animation) {
-    return {animation.svg, animation.title, animation.title};
+    return {animation.svg, animation.title};
 }
 
 std::string html_of(const Report& report) {
@@ -166,14 +114,6 @@ std::string html_of(const Report& report) {
     if (!report.author.empty()) writer.page += "<p class=\"author\">" + text::html(report.author) + "</p>\n";
     for (const ReportItem& item : report.items) std::visit(writer, item);
     return writer.page + "</body>\n</html>\n";
-}
-
-MarkdownReport markdown_of(const Report& report, const std::string& stem) {
-    MarkdownWriter writer{{}, stem};
-    writer.report.text = "# " + plain_markdown(text::displayable(report.title)) + "\n\n";
-    if (!report.author.empty()) writer.report.text += plain_markdown(report.author) + "\n\n";
-    for (const ReportItem& item : report.items) std::visit(writer, item);
-    return std::move(writer.report);
 }
 
 namespace {
@@ -435,11 +375,9 @@ int save_report(lua_State* L) {
     Report report = *report_self(L, "r:save");
     const std::string name = words_at(L, 2, "r:save", "the name of the file");
     const std::string ending = text::ending_of(name);
-    if (ending != ".html" && ending != ".md") {
+    if (ending != ".html") {
         lua::fail(L, "r:save",
-                  {.sentence = fmt::format("the name '{}' must end in .html (one page with its pictures) or "
-                                           ".md (Markdown, with pictures beside it)",
-                                           name),
+                  {.sentence = fmt::format("the name '{}' must end in .html, one page with its pictures", name),
                    .culprit = name});
     }
     if (taker != nullptr) {
@@ -449,15 +387,7 @@ int save_report(lua_State* L) {
     if (std::string script = running_script(L); !script.empty()) {
         report.items.emplace_back(ReportLines{std::move(script), "The script"});
     }
-    if (ending == ".html") {
-        lua::value_or_raise(L, "r:save", files::write_file(name, html_of(report)));
-        return 0;
-    }
-    const MarkdownReport written = markdown_of(report, name.substr(0, name.size() - ending.size()));
-    for (const auto& [picture, svg] : written.pictures) {
-        lua::value_or_raise(L, "r:save", files::write_file(picture, svg));
-    }
-    lua::value_or_raise(L, "r:save", files::write_file(name, written.text));
+    lua::value_or_raise(L, "r:save", files::write_file(name, html_of(report)));
     return 0;
 }
 
@@ -504,8 +434,7 @@ constexpr lua::Member report_members[] = {
       {&report_animate_call}}},
     {lua::a_method<save_report>,
      {"r:save(file)",
-      "Writes the report, with the script appended: .html is one page with its pictures, .md is Markdown with the "
-      "pictures as separate files. A report made at the prompt has no script: hand in the file of :save "
+      "Writes the report as file.html, one page with its pictures and, at its end, the script. A report made at the prompt has no script: hand in the file of :save "
       "session.lua with it. Under dinal --report the parts go into the page of the script instead.",
       DINAL_REPORT "name = os.tmpname() .. \".html\"\nr:save(name)\n"
                    "print(io.open(name):read(\"l\"))  --> <!DOCTYPE html>"}},

@@ -1,4 +1,4 @@
-// A report: text, values, tables and pictures in their order, as one page of HTML or as Markdown.
+// A report: text, values, tables and pictures in their order, as one page of HTML.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,6 @@ struct ReportLines {
 struct ReportPicture {
     std::string svg;   ///< empty if not drawn
     std::string text;  ///< the picture as text
-    std::string title = {};
 };
 using ReportItem = std::variant<ReportHeading, ReportText, ReportLines, ReportPicture, api::DataHandle>;
 
@@ -54,13 +53,6 @@ ReportPicture drawn(const api::Animation& animation);
 
 /// A self-contained page: pictures are inline SVG, printed on A4.
 std::string html_of(const Report& report);
-
-/// A text with its pictures as separate files, with their names: `stem`-1.svg ...
-struct MarkdownReport {
-    std::string text;
-    std::vector<std::pair<std::string, std::string>> pictures;
-};
-MarkdownReport markdown_of(const Report& report, const std::string& stem);
 
 // --report: turns the output and pictures of a script into a page.
 

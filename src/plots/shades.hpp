@@ -1,4 +1,4 @@
-// Maps: values over a grid as areas of one shade each, and contours.
+// Maps: values over a grid as areas of one shade each.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,6 @@ Absences absences_of(const Shades& shades);
 
 /// The midpoints between values, and one edge beyond each end.
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
-
-/// The contour of z at this level, with nan between its pieces.
-Curve contour(const Shades& shades, double level);
 
 /// From dark 0x440154 to bright 0xFDE725; legible for the colour-blind and in greyscale.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);

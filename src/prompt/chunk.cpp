@@ -211,12 +211,12 @@ void push_partial(lua_State* L) {
     lua_remove(L, -2);
 }
 
-/// Prints how to continue: a partial run with run:continue, a partial sweep by calling it again.
+/// Prints how to continue: a partial run with run:continue, a partial sweep with a file by calling it again.
 int print_partial(lua_State* L) {
     const lua::Documented kept = lua::documented(L, 1);
     const bool run = kept.owner != nullptr && kept.owner->name == std::string_view("run");
     say_error((run ? "the finished part of the run is in dinal.partial and in ans (ans:continue() continues it):\n"
-                   : "the finished points are in dinal.partial and in ans; the same call continues:\n") +
+                   : "the finished points are in dinal.partial and in ans (with file the same call continues):\n") +
               show(L, 1, terminal::display_of(STDERR_FILENO)));
     return 0;
 }
@@ -241,14 +241,12 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
         set_ans(L, base + 1);
     }
     const std::string element = single && lua_isnil(L, base + 1) ? element_notice(L, chunk) : "";
-    const std::string greatest = single ? greatest_notice(L, base + 1, chunk) : "";
     if (!chunk.silent) {
         show_by(L, show_values, base);
     }
     if (single) {
         say_notice(name_notice(L, chunk));
         say_notice(element);
-        say_notice(greatest);
     }
 }
 

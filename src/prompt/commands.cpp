@@ -51,25 +51,7 @@ void time(Session& session, const std::string& text) {
     say(fmt::format("{:.3g} s\n", taken.count()));
 }
 
-void record(Session& session, const std::string& file) {
-    if (file.empty()) {
-        say(session.record.file().empty() ? "nothing is being recorded; :record lab.lua starts a recording\n"
-                                          : fmt::format("recorded into {}\n", session.record.file()));
-        return;
-    }
-    if (const auto begun = session.record.begin(file); !begun) {
-        say_error(":record: " + begun.error().sentence);
-        return;
-    }
-    say(fmt::format("inputs that run without error are now written to {}\n", file));
-}
-
-void save(Session& session, const std::string& argument) {
-    const std::string file = argument.empty() ? session.record.file() : argument;
-    if (file.empty()) {
-        say_error(":save needs the name of a file, for example :save lab.lua");
-        return;
-    }
+void save(Session& session, const std::string& file) {
     if (const auto saved = session.record.save(file); !saved) {
         say_error(":save: " + saved.error().sentence);
         return;
@@ -230,13 +212,11 @@ struct Command {
     bool file = false;  // whether the argument is a file name
 };
 
-constexpr std::array<Command, 14> commands = {{
+constexpr std::array<Command, 13> commands = {{
     {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
     {"quit", Argument::none, ":quit", "Leaves dinal, like Ctrl-D.", quit},
     {"time", Argument::needed, ":time code", "Runs code once and prints the time it took.", time},
-    {"record", Argument::optional, ":record file",
-     "Writes your inputs from now on, if they run without error, to a script.", record, true},
-    {"save", Argument::optional, ":save file",
+    {"save", Argument::needed, ":save file",
      "Writes the inputs of this session so far, without the errors, to a script.", save, true},
     {"load", Argument::needed, ":load file", "Runs a script; its global variables stay.", load, true},
     {"history", Argument::optional, ":history [n]", "Lists the last 20 inputs of this session, or n.", history},

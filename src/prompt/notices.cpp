@@ -232,26 +232,6 @@ std::string overwritten_notice(lua_State* L, const std::string& text) {
     return "";
 }
 
-std::string greatest_notice(lua_State* L, int index, const Chunk& chunk) {
-    const lua::Documented found = lua::documented(L, index);
-    if (found.owner == nullptr || found.owner->name != std::string_view("vector")) {
-        return "";
-    }
-    const std::string_view text = chunk.expression;
-    const std::vector<lua::Token> all = lua::tokens(text);
-    const bool called = all.size() > 5 && all[0].is("math") && all[1].is(".") &&
-                        (all[2].is("max") || all[2].is("min")) && all[3].is("(") && all.back().is(")");
-    if (!called) {
-        return "";
-    }
-    const bool path = std::all_of(all.begin() + 4, all.end() - 1, [](const lua::Token& token) {
-        return token.kind == lua::TokenKind::name || token.is(".");
-    });
-    const std::string_view argument = text.substr(all[4].at, all.back().at - all[4].at);
-    return fmt::format("math.{} of one vector is that vector; its {} element is {}:{}()", all[2].text,
-                       all[2].is("max") ? "greatest" : "least", path ? argument : "v", all[2].text);
-}
-
 void say_notice(const std::string& notice) {
     if (!notice.empty()) {
         say_error("(" + notice + ")");

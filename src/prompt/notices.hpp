@@ -30,9 +30,6 @@ std::string comma_notice(const std::string& text);
 /// For a standard name with a new value: system = 3, math.pi = 3.
 std::string overwritten_notice(lua_State* L, const std::string& text);
 
-/// For math.max of one vector, which returns that vector; the value is at `index`.
-std::string greatest_notice(lua_State* L, int index, const Chunk& chunk);
-
 /// Prints a notice on standard error, unless empty.
 void say_notice(const std::string& notice);
 

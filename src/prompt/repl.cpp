@@ -192,11 +192,7 @@ bool run_chunk(Session& session, const Chunk& chunk, const std::string& text) {
     say_notice(nil_notice(session.L, text));
     say_notice(comma_notice(text));
     say_notice(overwritten_notice(session.L, text));
-    const std::string before = session.record.problem();
     session.record.add(chunk, result);
-    if (const std::string& problem = session.record.problem(); !problem.empty() && before.empty()) {
-        say_error(":record: " + problem);
-    }
     return true;
 }
 
@@ -284,66 +280,28 @@ void Record::add(const Chunk& chunk, const Evaluated& result) {
         return;
     }
     entries_.push_back({chunk, result});
-    update();
 }
 
 void Record::add_statement(const std::string& statement) {
     add(Chunk{Compiled::ready, statement, "", false}, Evaluated{true, 0, false});
 }
 
-void Record::clear() {
-    entries_.clear();
-    begin_ = 0;
-    update();
-}
-
 bool Record::writes(const std::string& file) const {
     return std::find(written_.begin(), written_.end(), file) != written_.end();
 }
 
-text::Expected<bool> Record::may_write(const std::string& file) const {
+text::Expected<bool> Record::save(const std::string& file) {
     if (lua::safe_mode() && !file.ends_with(".lua")) {
         return text::Error{fmt::format("{} does not end in .lua, and safe mode writes no other scripts", file)};
     }
     if (!writes(file) && access(file.c_str(), F_OK) == 0) {
         return text::Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
     }
-    return true;
-}
-
-text::Expected<bool> Record::begin(const std::string& file) {
-    if (auto allowed = may_write(file); !allowed) {
-        return allowed;
-    }
-    begin_ = entries_.size();
-    file_ = file;
-    problem_.clear();
-    update();
-    if (!problem_.empty()) {
-        file_.clear();
-        return text::Error{problem_};
-    }
-    written_.push_back(file);
-    return true;
-}
-
-text::Expected<bool> Record::save(const std::string& file) {
-    if (auto allowed = may_write(file); !allowed) {
-        return allowed;
-    }
-    if (auto written = files::write_file(file, script(0)); !written) {
+    if (auto written = files::write_file(file, script()); !written) {
         return written.error();
     }
     written_.push_back(file);
     return true;
-}
-
-void Record::update() {
-    if (file_.empty()) {
-        return;
-    }
-    const auto written = files::write_file(file_, script(begin_));
-    problem_ = written ? "" : written.error().sentence;
 }
 
 bool Record::sets_ans(const Entry& entry) {
@@ -363,9 +321,9 @@ bool Record::ans_is_used_after(std::size_t entry) const {
     return false;
 }
 
-std::string Record::script(std::size_t first) const {
+std::string Record::script() const {
     std::string text = "-- typed at the prompt of dinal " DINAL_VERSION "\n";
-    for (std::size_t i = first; i < entries_.size(); ++i) {
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
         const auto& [chunk, result] = entries_[i];
         std::string lines(text::trimmed(chunk.statements));
         const std::string expression(text::trimmed(chunk.expression));

@@ -18,18 +18,13 @@ public:
     void add(const Chunk& chunk, const Evaluated& result);
     /// Adds a statement equivalent to a command.
     void add_statement(const std::string& statement);
-    void clear();
+    void clear() { entries_.clear(); }
 
-    /// Starts writing a file, without the inputs so far, and keeps it up to date.
-    text::Expected<bool> begin(const std::string& file);
     /// Writes the whole session to a file.
     text::Expected<bool> save(const std::string& file);
 
-    [[nodiscard]] const std::string& file() const { return file_; }
     /// Returns whether the file belongs to this session: a script that loads itself would never end.
     [[nodiscard]] bool writes(const std::string& file) const;
-    /// The reason if the file is no longer up to date; otherwise empty.
-    [[nodiscard]] const std::string& problem() const { return problem_; }
 
 private:
     struct Entry {
@@ -37,15 +32,10 @@ private:
         Evaluated result;
     };
     [[nodiscard]] static bool sets_ans(const Entry& entry);
-    [[nodiscard]] std::string script(std::size_t first) const;
+    [[nodiscard]] std::string script() const;
     [[nodiscard]] bool ans_is_used_after(std::size_t entry) const;
-    [[nodiscard]] text::Expected<bool> may_write(const std::string& file) const;
-    void update();
 
     std::vector<Entry> entries_;
-    std::string file_;
-    std::string problem_;
-    std::size_t begin_ = 0;             // the first entry in the file
     std::vector<std::string> written_;  // files of this session, which may be overwritten
 };
 

@@ -317,7 +317,7 @@ const lua::Class sweep_functions = {
     sweep_members};
 
 void register_sweep(lua_State* L) {
-    register_unfinished_sweep(L);
+    register_parted_sweep(L);
     lua::add_functions(L, sweep_functions);
 }
 

@@ -101,7 +101,7 @@ inline constexpr lua::Doc sweep_doc{
     "missing numbers are nan. If the function fails, the column `error` has the message.\nEach thread has a copy "
     "of the function with all that it uses: local variables, globals, tables, vectors, systems, excitations. So "
     "it cannot change anything outside. Runs, coroutines and open files cannot be copied. Ctrl-C keeps the "
-    "finished points in dinal.partial, and the same call continues.",
+    "finished points in dinal.partial; with file the same call continues.",
     "map = sweep{ over = { r = { 0.4, 1.5 }, g = vector.linspace(0.2, 0.6, 3) }, run = function(p)\n"
     "    s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }\n"
     "    return { A = s.amplitude, stops = s.stops }\n"

@@ -378,30 +378,6 @@ private:
     int function_ = 0;  // stack index of a function of another language; 0: it is in the states
 };
 
-// ---- sweeps stopped by Ctrl-C, continued by the same call
-
-const char unfinished_key = 0;  // in the registry
-
-struct Unfinished {
-    std::uint64_t asked = 0;
-    std::shared_ptr<SweepResults> results = {};
-};
-
-std::shared_ptr<SweepResults> take_unfinished(lua_State* L, std::uint64_t asked) {
-    std::shared_ptr<SweepResults> results;
-    lua_rawgetp(L, LUA_REGISTRYINDEX, &unfinished_key);
-    if (const auto* unfinished = lua::test<Unfinished>(L, -1); unfinished != nullptr && unfinished->asked == asked) {
-        results = unfinished->results;
-    }
-    lua_pop(L, 1);
-    return results;
-}
-
-void keep_unfinished(lua_State* L, std::uint64_t asked, const std::shared_ptr<SweepResults>& results) {
-    results == nullptr ? lua_pushnil(L) : static_cast<void>(lua::push(L, Unfinished{asked, results}));
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &unfinished_key);
-}
-
 void add_column(source::Fingerprint& print, const DataColumn& column) {
     print.add(column.name);
     print.add(static_cast<double>(column.size()));
@@ -474,14 +450,11 @@ std::size_t worker_count(lua_State* L, const std::optional<double>& asked, std::
     return std::clamp<std::size_t>(std::min(wanted, most_workers(L)), 1, std::max<std::size_t>(points, 1));
 }
 
-const lua::Class unfinished_class = {"unfinished sweep", {"", "", ""}, std::span<const lua::Member>()};
-
 class SweepRun {
 public:
-    /// Loads points computed before, in this process or in a file.
-    SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task), print_(fingerprint_of(L, task)) {
+    /// Loads points computed before from the file.
+    SweepRun(lua_State* L, const SweepTask& task) : L_(L), task_(task) {
         if (!task.file.empty()) open_journal();
-        if (task.file.empty() && !task.points) results_ = take_unfinished(L_, print_);
         const std::size_t size = task.points ? task.points->second - task.points->first : task.grid.size();
         if (!results_) results_ = std::make_shared<SweepResults>(size, chunk_size_for(size));
     }
@@ -516,7 +489,6 @@ public:
     /// Puts the finished points in dinal.partial.
     void keep(lua_State* L) {
         L_ = L;
-        if (!journal_) keep_unfinished(L_, print_, results_);
         push_data(L_, finished_data());
         set_partial(L_);
     }
@@ -538,7 +510,7 @@ private:
                        .option = "file"});
         }
         results_ = std::make_shared<SweepResults>(task_.grid.size(), chunk_size_for(task_.grid.size()));
-        journal_.emplace(task_.file, fmt::format("{:016x}", print_), *results_);
+        journal_.emplace(task_.file, fmt::format("{:016x}", fingerprint_of(L_, task_)), *results_);
         if (const auto wrong = journal_->open()) lua::fail(L_, task_.call, *wrong);
     }
 
@@ -621,7 +593,6 @@ private:
 
     Data finished() {
         if (task_.points) return finished_data();
-        if (!journal_) keep_unfinished(L_, 0, nullptr);
         Data data = finished_data();
         raise_if_all_failed(data);
         if (journal_) trouble_ = journal_->finish(data);
@@ -631,7 +602,6 @@ private:
 
     lua_State* L_;
     const SweepTask& task_;
-    std::uint64_t print_;
     std::shared_ptr<SweepResults> results_;
     std::optional<SweepJournal> journal_;
     std::optional<text::Error> trouble_;
@@ -692,8 +662,7 @@ void push_parted(lua_State* L, std::vector<DataColumn> parameters,
     lua::push<PartedHandle>(L, sweep);
 }
 
-void register_unfinished_sweep(lua_State* L) {
-    lua::add_class<Unfinished>(L, unfinished_class);
+void register_parted_sweep(lua_State* L) {
     lua::add_class<PartedHandle>(L, parted_class);
 }
 

@@ -125,7 +125,7 @@ int sweep_in_parts(lua_State* L);
 /// Registers sweep, bifurcation and minimise; in bind_sweep.cpp.
 void register_sweep(lua_State* L);
 extern const lua::Class sweep_functions;
-void register_unfinished_sweep(lua_State* L);
+void register_parted_sweep(lua_State* L);
 
 /// The number of points in a chunk, the most that are lost if the process is killed.
 std::size_t chunk_size_for(std::size_t points);

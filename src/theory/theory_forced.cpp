@@ -17,10 +17,6 @@ double phase_lag(double r, double zeta) {
     return r == 1 ? pi / 2 : std::atan2(2 * zeta * r, detuning(r));
 }
 
-double equivalent_damping_ratio(double friction_ratio, double r, double magnification) {
-    return 2 * friction_ratio / (pi * r * magnification);
-}
-
 // With zeta + zeta_eq instead of zeta, (1 - r^2)^2 Phi^2 + (2 zeta r Phi + g)^2 = 1, g = 4 gamma/pi: the positive root,
 // in a form without subtraction.
 std::optional<Harmonic_motion> linearised_friction(double r, double zeta, double friction_ratio) {

@@ -20,10 +20,6 @@ double magnification(double r, double zeta);
 /// The lag of the motion behind the load: atan2(2 zeta r, 1 - r^2), 0 to pi; pi/2 at r = 1 for any zeta.
 double phase_lag(double r, double zeta);
 
-/// The damping ratio that dissipates as much energy as friction in a cycle of amplitude Phi, in units of M0/k: 2
-/// gamma/(pi r Phi).
-double equivalent_damping_ratio(double friction_ratio, double r, double magnification);
-
 /// Amplitude and lag of a harmonic motion, or of the fundamental of another motion.
 struct Harmonic_motion {
     double amplitude = 0;

@@ -81,14 +81,4 @@ struct Dampings {
 /// inaccurate to distinguish that damping from zero.
 std::optional<Dampings> identify(double X0, double X1, double X2);
 
-// Step limits of numerical methods: as printed in the report, as its argument implies, and correct ones.
-
-/// deltatmax as printed by the program of 1989: T0 (zeta + gamma/VMAX), VMAX = sqrt((w0 theta0)^2 + velocity0^2) and
-/// gamma = Rd/|Mc|. Its second term depends on the units. Infinity with friction and no motion.
-double printed_step_limit(const model::Oscillator& system, const model::State& initial, double characteristic_torque);
-
-/// The limit by the report's argument without its errors. Euler's amplification matrix requires h < (a + K b)/c, that
-/// is T0 zeta/pi + Rd/(k VMAX), for any Mc. It is not a limit of Runge-Kutta: see rk4::stability_limit in motion/rk4.
-double euler_step_limit(const model::Oscillator& system, const model::State& initial);
-
 }  // namespace dinal::theory

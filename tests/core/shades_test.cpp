@@ -1,4 +1,4 @@
-// Maps: which values have one shade, and lines of equal value.
+// Maps: which values have one shade.
 #include "plots/shades.hpp"
 #include "support/catch.hpp"
 
@@ -27,39 +27,6 @@ Shades shades_over(int n, Function f) {
 }
 
 }  // namespace
-
-TEST_CASE("a contour of a cone is a circle, closed and in one piece", "[shades]") {
-    const int n = 81;
-    const Curve circle = contour(shades_over(n, [](double x, double y) { return std::hypot(x, y); }), 0.7);
-    std::size_t gaps = 0;
-    for (std::size_t i = 0; i < circle.size(); ++i) {
-        const double x = circle.x.values[i], y = circle.y.values[i];
-        if (std::isnan(x)) {
-            ++gaps;
-            continue;
-        }
-        // The error of straight lines over a side of length h = 2/80: h^2/8 times the second derivative, at most 1/0.7.
-        CHECK(std::fabs(std::hypot(x, y) - 0.7) < std::pow(2.0 / 80, 2) / 8 / 0.7 * 1.1);
-    }
-    CHECK(gaps == 1);
-    CHECK(circle.size() > 200);
-    CHECK(circle.x.values[0] == circle.x.values[circle.size() - 2]);
-    CHECK(circle.y.values[0] == circle.y.values[circle.size() - 2]);
-}
-
-TEST_CASE("a contour ends at the edge of the grid and where a value is missing", "[shades]") {
-    const double nan = std::nan("");
-    const Curve line = contour(shades_over(5, [nan](double x, double y) { return y == 0 ? nan : x; }), 0.25);
-    std::size_t points = 0;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        if (!std::isnan(line.x.values[i])) {
-            CHECK(line.x.values[i] == 0.25);  // z is x itself, so straight lines are exact
-            CHECK(std::fabs(line.y.values[i]) >= 0.5);
-            ++points;
-        }
-    }
-    CHECK(points == 4);  // y = -1, -0.5 and 0.5, 1
-}
 
 TEST_CASE("infinity has no shade if each shade is a single number", "[shades]") {
     const std::vector<ShadeBand> bands = bands_of(shades_over(3, [](double x, double) { return x; }), 5);

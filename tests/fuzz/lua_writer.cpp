@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 34> numbers{
     "0/0",       "1/0",  "-1/0",  "math.pi",   "2^53",    "-0.0",     "1000",     "$g",
     "#$v",       "#$r",  "$v[1]", "($n + $n)", "$n * $n", "$v:max()", "$v:sum()", "math.mininteger",
     "$r:at($t)", "$s.T0"};
-constexpr std::array<std::string_view, 14> theories{
+constexpr std::array<std::string_view, 13> theories{
     "theory.free_response{ t = $v, theta0 = $n, velocity0 = $n, system = $s }",
     "theory.extremes{ system = $s, theta0 = $n, count = $n }",
     "theory.time_to_rest{ system = $s, theta0 = $n, velocity0 = $n }",
@@ -25,12 +25,11 @@ constexpr std::array<std::string_view, 14> theories{
     "theory.identify{ X0 = $n, X1 = $n, X2 = $n }",
     "theory.magnification{ r = $v, zeta = $n }",
     "theory.phase_lag{ r = $v, zeta = $v }",
-    "theory.equivalent_zeta{ friction_ratio = $n, r = $n, magnification = $n }",
     "theory.linearised{ r = $n, friction_ratio = $n, zeta = $n }",
     "theory.den_hartog{ r = $n, friction_ratio = $n, zeta = $n, breakaway_ratio = $n }",
     "theory.den_hartog_fundamental{ r = $v, friction_ratio = $n }",
     "theory.stop_boundary{ r = $n, zeta = $n, Re_over_Rd = $n }",
-    "theory.step_limit{ system = $s, rule = $w, theta0 = $n, Mc = $n }"};
+    "theory.step_limit{ system = $s }"};
 
 constexpr std::array<std::string_view, 18> times{"1",  "0",   "0.5",   "2",   "3",   "0.25", "0.1", "1e-3", "10",
                                                  "-1", "1e9", "1e-12", "0/0", "1/0", "$n",   "2.5", "$g",   "0.7"};

@@ -102,4 +102,19 @@ test("a contact whose load depends on the angle has a period, and is never stuck
     equal(steady.stuck, 0)
 end)
 
+test("a small spring torque lets the mass slip right before its contact opens, early and late", function()
+    local a, k, Rd, theta0 = 1.2, 7, 0.4, 1e-4
+    local normal = function(t) return math.max(0, 1 + a * math.sin(6 * t + 1)) end
+    for _, start in ipairs { 0, 30.5, 1000 } do
+        local run = system { I = 1, k = k, C = 0.2, Rd = Rd, normal = normal }:simulate { theta0 = theta0, t_start = start, t_end = start + 20 }
+        equal(run.t_end, start + 20)
+        for i, pressed in ipairs { k * theta0 / Rd, 0 } do
+            local phase = math.pi - math.asin((pressed - 1) / a)
+            local round = math.ceil((6 * start + 1 - phase) / (2 * math.pi))
+            near(run.events[i].t, (phase + 2 * math.pi * round - 1) / 6, 1e-12)
+            equal(run.events[i].kind, i == 1 and "slip" or "open")
+        end
+    end
+end)
+
 finish()

@@ -79,6 +79,26 @@ test("mistakes in a response are errors with a reason", function()
     })
 end)
 
+test("elastic walls, a slider behind a spring and a normal load answer to a sine as to the same M by at", function()
+    local frequencies = vector.linspace(0.3, 0.5, 3)
+    local function normal(t) return 1 + 0.5 * math.sin(2 * math.pi * 0.4 * t) end
+    for _, case in ipairs {
+        { frequencies, walls = { lower = -0.3, upper = 0.3, stiffness = 50, damping = 1 } },
+        { frequencies, friction = friction.jenkins { stiffness = 10, Rd = 0.3 } },
+        { { 0.4 }, Rd = 0.3, normal = normal },
+    } do
+        local sys = system(merged({ I = 1, k = 4, C = 0.2 }, { walls = case.walls, friction = case.friction, Rd = case.Rd, normal = case.normal }))
+        local c = sys:response { amplitude = 1, over = { frequency = case[1] } }
+        local by_at = sys:response { over = { f = case[1] }, at = function(p)
+            return { M = excitation.harmonic { amplitude = 1, frequency = p.f }, frequency = p.f }
+        end }
+        equal(#c, #by_at)
+        for _, name in ipairs { "amplitude", "lag", "stable", "branch" } do near((c[name] - by_at[name]):abs():max(), 0, 1e-9) end
+    end
+    local varies = system { I = 1, k = 4, C = 0.2, Rd = 0.3, normal = normal }
+    refuses(function(o) varies:response(o) end, { { { over = { frequency = { 0.3 } } }, "period" } })
+end)
+
 test("folds, jumps and unstable branches are rows, and a picture in pieces", function()
     local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.02, spring = spring.polynomial{ [3] = 0.5 } }
     local c = sys:response{ amplitude = 0.5, over = { frequency = { 0.2, 0.3, 0.42 } } }

@@ -554,4 +554,109 @@ test("two loads of one link that slide by turns follow an independent time-stepp
     near(run.b.theta[#run], -1.133706203, 3e-9)
 end)
 
+test("functions that jump at one surface have one share, in loads and in rates", function()
+    local function sgn(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    -- On the surface theta' = -2 theta, which takes M = 5 theta, and so the mean -5/3 theta of sgn.
+    local run = system { I = 1, k = 1 }:simulate {
+        M = function(_, theta, v) return -3 * sgn(v + 2 * theta) end,
+        states = { z = { rate = function(_, theta, v) return sgn(2 * v + 4 * theta) end } },
+        theta0 = 0.3, velocity0 = -0.6, t_end = 3,
+    }
+    for i, t in ipairs(run.t) do near(run.states.z[i], -0.25 * (1 - math.exp(-2 * t)), 1e-12) end
+    -- A pair of loads between two bodies is dry friction between them.
+    local bodies = { a = { I = 1 }, b = { I = 2 } }
+    local function f(t) return 2.9 * math.sin(t) end
+    local task = {
+        M = {
+            a = function(t, _, v) return -2 * sgn(v.a - v.b) + 2.9 * math.sin(t) end,
+            b = function(_, _, v) return 2 * sgn(v.a - v.b) end,
+        }, velocity0 = { a = 0.5 }, t_end = 9,
+    }
+    run = system { bodies = bodies }:simulate(task)
+    task.M = { a = f }
+    local dry = system { bodies = bodies, links = { l = { "a", "b", Rd = 2 } } }:simulate(task)
+    near(run.a.theta, dry.a.theta, 1e-10)
+    near(run.b.theta, dry.b.theta, 1e-10)
+    equal(#of_kind(run.a, "switch"), #of_kind(dry, "stick") + #of_kind(dry, "slip"))
+    equal(#of_kind(run.b, "switch"), #of_kind(run.a, "switch"))
+    closes(run)
+end)
+
+test("three bodies slide along their surfaces at once", function()
+    local function sgn(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    local rig = system {
+        bodies = { a = { I = 1, k = 1 }, b = { I = 2, C = 0.3 }, c = { I = 0.5, Rd = 0.2 } },
+        links = { l = { "a", "b", k = 3 }, m = { "b", "c", k = 2, C = 0.1, Rd = 0.1 } },
+    }
+    local run = rig:simulate {
+        M = {
+            a = function(_, theta, v) return -9 * sgn(v.a + 2 * theta.a) end,
+            b = function(_, theta, v) return -9 * sgn(v.b + theta.b) end,
+            c = function(_, theta, v) return -9 * sgn(v.c + 1.5 * theta.c) end,
+        }, theta0 = { a = 0.3, b = -0.2, c = 0.4 }, velocity0 = { a = -0.6, b = 0.2, c = -0.6 }, t_end = 4,
+    }
+    for i, t in ipairs(run.t) do
+        near(run.a.theta[i], 0.3 * math.exp(-2 * t), 1e-11)
+        near(run.b.theta[i], -0.2 * math.exp(-t), 1e-11)
+        near(run.c.theta[i], 0.4 * math.exp(-1.5 * t), 1e-11)
+    end
+    closes(run)
+end)
+
+test("a slide ends where friction turns against it, and the body does not stick there if the load moves it on", function()
+    -- the surface passes the velocity of the belt at t = 1.5; from there on the friction acts against the load
+    local function on_belt(D)
+        return system { I = 1, k = 0, Rd = 0.3 }:simulate {
+            M = function(t, _, v) return v - t + 1 > 0 and -D or D end, belt = 0.5, velocity0 = -1, t_end = 3,
+        }
+    end
+    for _, D in ipairs { 0.9, 1.2 } do
+        local run = on_belt(D)
+        near(run.velocity[#run], 0.5 + (D - 0.3) * 1.5, 1e-12)
+        closes(run)
+    end
+    local strong = on_belt(1.4)
+    near(strong.velocity[#strong], 2, 1e-12)
+    -- the surface moves with another body, and passes 0 at t = 1.2
+    local function beside(D)
+        return system { bodies = { a = { I = 1 }, b = { I = 1, Rd = 0.3 } } }:simulate {
+            M = { a = 0.5, b = function(_, _, v) return v.b - v.a - 0.4 > 0 and -D or D end },
+            velocity0 = { a = -1, b = -0.6 }, t_end = 3,
+        }
+    end
+    local run = beside(0.6)
+    near(run.b.velocity[#run.t], 0.3 * 1.8, 1e-12)
+    equal(#of_kind(run, "stick"), 0)
+    run = beside(0.25)
+    equal(of_kind(run, "stick")[1].where, "b")
+    near(run.b.velocity[#run.t], 0, 0)
+    -- or with a state
+    run = system { I = 1, k = 0, Rd = 0.3 }:simulate {
+        M = function(_, _, v, z) return v - z.z > 0 and -0.6 or 0.6 end,
+        states = { z = { start = -1, rate = function() return 0.5 end } }, velocity0 = -1, t_end = 4,
+    }
+    near(run.velocity[#run], 0.3 * 2, 1e-12)
+    equal(#of_kind(run, "stick"), 0)
+end)
+
+test("a load and the rate of a state slide at once, and follow an independent program with steep lines", function()
+    local function sgn(x) return x > 0 and 1 or -1 end
+    local run = system { I = 1.623, k = 0, Rd = 0.473 }:simulate {
+        M = function(t, _, v, z)
+            return 0.1909 * math.sin(2.0131 * t + 2.9762) - 0.9518 * sgn(v + 1.1731 * z.z - 0.4392 * math.sin(1.2811 * t + 1.3491))
+        end,
+        states = {
+            z = {
+                start = 0.044,
+                rate = function(_, theta, v, z)
+                    return -1.6205 * z.z + 0.8402 * theta - 0.5364 * v - 0.4514 * sgn(z.z - 0.7472 * v + 0.1837)
+                end,
+            },
+        }, theta0 = 0.292, t_end = 6,
+    }
+    near(run.theta[#run], 0.580617977, 3e-9)
+    near(run.velocity[#run], 0.179453653, 3e-9)
+    near(run.states.z[#run], -0.010953476, 3e-9)
+end)
+
 finish()

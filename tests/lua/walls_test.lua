@@ -238,4 +238,23 @@ test("bodies in a row that nothing but their walls pushes go on together under a
     equal(#run.events, 0)
 end)
 
+test("impacts in a row that bounce end, also where only rounding is left of them", function()
+    for _, e in ipairs { 0.3, 0.5, 0.7 } do
+        local function link(first, second) return { first, second, walls = { upper = 0, restitution = e } } end
+        local rig = system {
+            bodies = { a = { I = 1, C = 0.1 }, b = { I = 2, k = 1 }, c = { I = 0.7, C = 0.2 }, d = { I = 1.5, C = 0.1, k = 2 } },
+            links = { ab = link("a", "b"), bc = link("b", "c"), cd = link("c", "d") },
+        }
+        for _, A in ipairs { 0.5, 1, 2 } do
+            local run = rig:simulate {
+                M = { a = function(t) return A * math.sin(1.3 * t) + 0.3 end, d = function(t) return -0.5 * math.sin(t) end },
+                theta0 = { a = -0.2, b = -0.1, c = 0.1, d = 0.15 }, velocity0 = { a = 0.7, d = -0.5 }, t_end = 12,
+            }
+            equal(run.status, "end")
+            closes(run)
+            for _, name in ipairs { "ab", "bc", "cd" } do assert(run[name].theta:max() <= 1e-12, run[name].theta:max()) end
+        end
+    end
+end)
+
 finish()

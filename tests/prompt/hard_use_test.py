@@ -94,7 +94,7 @@ class Limits(HardUse):
     def test_safe_mode_writes_scripts_only_where_scripts_are(self):
         session = self.session("--safe")
         session.enter("1 + 1")
-        for command in (":save notes.txt", ":record .bashrc"):
+        for command in (":save notes.txt", ":save .bashrc"):
             self.assertIn("does not end in .lua", session.enter(command))
         self.assertIn("are in lab.lua", session.enter(":save lab.lua"))
         self.assertEqual([name for name in self.files() if not name.startswith(".")], ["lab.lua"])

@@ -1,4 +1,4 @@
-"""Ctrl-C in a sweep at the prompt: what is done is kept, and the same call goes on. Usage: sweep_test.py PROGRAM"""
+"""Ctrl-C in a sweep at the prompt: what is done is kept, and the same call goes on if it has a file. Usage: sweep_test.py PROGRAM"""
 
 import sys
 import time
@@ -12,7 +12,7 @@ from session import CTRL_C, PATIENCE
 # Each point notes itself and takes 5 ms of processor time.
 POINT = ("function point(p) local file <close> = io.open('points', 'a') file:write(p.x, '\\n') local t = os.clock() "
          "while os.clock() - t < 0.005 do end return { y = 2*p.x } end")
-SWEEP = "map = sweep{ over = { x = vector.linspace(1, 1000, 1000) }, workers = 2, run = point }"
+SWEEP = "map = sweep{ over = { x = vector.linspace(1, 1000, 1000) }, workers = 2, file = 'map.csv', run = point }"
 
 
 class Sweeps(AtHome):

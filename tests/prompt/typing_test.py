@@ -142,7 +142,7 @@ class Completion(Typing):
         self.completes(terminal, 'help "excitation.har', 'help "excitation.harmonic"')
         self.completes(terminal, "?sys.dead", "?sys.dead_zone")
         self.completes(terminal, ":load rec", ":load record.csv")
-        self.completes(terminal, ":rec", ":record")
+        self.completes(terminal, ":hist", ":history")
         self.completes(terminal, "help(excitation.har", "help(excitation.harmonic")
 
     def test_it_never_runs_code_of_the_user(self):

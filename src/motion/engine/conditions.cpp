@@ -162,8 +162,8 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
         const bool just_crossed = last_.function == &function && last_.t == at.t && (last_.of & of_leaving) != 0;
-        if (!forgotten_ && slides_.just_left(function, at.t)) return;
-        const std::uint64_t asked = just_crossed ? again : again | of_leaving;
+        const bool known = !forgotten_ && slides_.just_left(function, at.t);
+        const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
         function.decide({t, at.side, y}, asked);
         if (asked != 0 && !forgotten_) decide_by_rate(function, at, asked);
     });
@@ -277,8 +277,14 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
     Crossed crossed;
     bool all_small = true;
     const Moment here = now.here();
+    // A surface that is met at the same instant counts first: a slide along it may keep the shares within their limits.
+    const bool meets = std::any_of(ending.conditions.begin(), ending.conditions.end(),
+                                   [](const auto& crossing) { return !crossing.first->slides(); });
     for (const auto& [function, condition] : ending.conditions) {
-        if (slides_.leave(*function, condition, now, crossed.slides)) {
+        if (condition <= 1 && function->slides() && meets) continue;
+        const auto& done = crossed.changes.functions;
+        if (std::find(done.begin(), done.end(), function) != done.end()) continue;
+        if (slides_.leave(*function, condition, now, crossed.changes)) {
             crossed.jumps = true, all_small = false;
             continue;
         }
@@ -301,7 +307,10 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         const bool driven_back = soon_again || slides_.stands(*function, now);
         const auto begun = driven_back ? slides_.begin(*function, {.jump = jump}, now) : std::nullopt;
         if (begun) {
-            crossed.slides.push_back({begun->joint, true}), crossed.work = begun->work, chatter.crossed(false);
+            auto& [slides, functions] = crossed.changes;
+            slides.insert(slides.end(), begun->changes.slides.begin(), begun->changes.slides.end());
+            functions.insert(functions.end(), begun->changes.functions.begin(), begun->changes.functions.end());
+            crossed.work = begun->work, chatter.crossed(false);
         } else if (since <= rather_soon * unit_) {
             crossed.back = {function, condition, since, jump};
         }

@@ -54,7 +54,7 @@ public:
     struct Crossed {
         bool jumps = false;     ///< whether a function has jumped
         std::size_t count = 0;  ///< number of functions that jumped, without friction laws
-        std::vector<SlideChange> slides{};
+        Slides::Changes changes{};
         double work = 0;  ///< work done by the first sliding load when the velocities were moved onto the condition
         bool endless = false;
         /// A condition of a load that was crossed back and forth without a slide.

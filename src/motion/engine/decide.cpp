@@ -242,12 +242,14 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     if (!now().rubs(j) || mode().keeps_place(j) || how.way != Motion::stuck) return otherwise;
     constexpr double later = 1e-9;  // in time units of the motion
     const double rounded = 64 * rounding * size(j) * by_.unit * joint_at(j).lightness(mechanics_.system().bodies);
-    std::vector<double> soon = now().y;
-    for (std::size_t i = 0; i < mechanics_.bodies(); ++i) {
-        soon[i] += later * by_.unit * soon[mechanics_.bodies() + i];
-        // A belt carries the velocity on, also past that at which a load jumps.
-        if (mechanics_.has_belt(j)) soon[mechanics_.bodies() + i] += later * by_.unit * found_.accelerations[i];
+    // A surface on which a load jumps may move on: with a belt, with other bodies, or with states.
+    std::vector<double> soon = now().y, rates(mechanics_.states());
+    const std::size_t n = mechanics_.bodies();
+    mechanics_.rates(now().here(), rates.data(), &mode());
+    for (std::size_t i = 0; i < n; ++i) {
+        soon[i] += later * by_.unit * soon[n + i], soon[n + i] += later * by_.unit * found_.accelerations[i];
     }
+    for (std::size_t k = 0; k < rates.size(); ++k) soon[2 * n + k] += later * by_.unit * rates[k];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
         auto both = both_sides(j, speed, now().here());
         if (!both || !both->drive_back) continue;

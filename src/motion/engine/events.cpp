@@ -52,14 +52,15 @@ bool Engine::cross(const Ending& ending) {
     const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
     result_.jumps += crossed.count;
     if (crossed.work != 0)
-        recorder_->add_jump(now_.t.hi, crossed.slides.front().joint.value_or(0), {.input = crossed.work});
-    for (const SlideChange& change : crossed.slides) recorder_->tell_slide(now_, change);
+        recorder_->add_jump(now_.t.hi, crossed.changes.slides.front().joint.value_or(0), {.input = crossed.work});
+    for (const SlideChange& change : crossed.changes.slides) recorder_->tell_slide(now_, change);
     bool goes_on = !crossed.endless || !crossed.jumps;
     if (crossed.back && settle(*crossed.back) != Settles::no) {
         goes_on = true;
     } else if (const auto held = crossed.back ? conditions_->hold(*crossed.back, now_) : std::nullopt) {
-        recorder_->add_jump(now_.t.hi, held->joint.value_or(0), {.input = held->work});
-        recorder_->tell_slide(now_, {held->joint, true});
+        const std::vector<SlideChange>& begun = held->changes.slides;
+        recorder_->add_jump(now_.t.hi, begun.front().joint.value_or(0), {.input = held->work});
+        for (const SlideChange& change : begun) recorder_->tell_slide(now_, change);
         goes_on = true;
     }
     return goes_on ? decide(true) : fail(Outcome::chattering);

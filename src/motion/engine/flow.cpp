@@ -378,13 +378,18 @@ void Flow::note(const Segment& s, const Series& series, double scale, double all
     if (s.may_grow) growth_ = std::min(growth_, longer_by(series, allowed / scale));
 }
 
-/// Returns the possible error of a body's loads due to the rounding of times far from t = 0.
+/// Returns the possible error of the torques on a body due to the rounding of times far from t = 0: of its loads, and
+/// of friction that changes in time.
 double Flow::lost_of_loads(const Segment& s, std::size_t body) const {
     double sum = 0;
+    bool friction_changes = false;
     for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
-        const bool acts = j == body || (!mechanics_.loads()[j].none() && mechanics_.system().joints[j].is_on(body));
+        const model::Joint& joint = mechanics_.system().joints[j];
+        const bool acts = j == body || (!mechanics_.loads()[j].none() && joint.is_on(body));
         if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late(s), s.h, sizes_.all[body]);
+        friction_changes = friction_changes || (!joint.friction.is_constant() && joint.is_on(body));
     }
+    if (friction_changes) sum += lost_in_time(cheb::fit(s.torques[body]), late(s), s.h, sizes_.all[body]);
     return sum;
 }
 

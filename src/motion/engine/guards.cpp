@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "motion/contact.hpp"
+
 namespace dinal::motion::engine {
 
 using model::Joint;

@@ -72,7 +72,9 @@ bool Engine::hit(std::size_t joint, int wall) {
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
     if (!(now_.t.hi - walls_.instant <= last_bounces * pace)) walls_.fastest = 0;
     walls_.instant = now_.t.hi, walls_.fastest = std::max(walls_.fastest, before);
-    const bool fades = before > 0 && before < faded_impact * walls_.fastest;
+    const double nothing =
+        std::max(faded_impact * walls_.fastest, 64 * rounding * mechanics_.speed_scale(joint, now_.y));
+    const bool fades = before > 0 && before < nothing;
     const Impulses::Thrown thrown = impulses_.along(joint, now_);
     const auto velocity = [&](double relative) { Impulses::apply(thrown, relative, now_); };
     velocity(-wall * e * before);

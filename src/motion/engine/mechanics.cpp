@@ -689,6 +689,18 @@ double Mechanics::next_break(double t) const {
     return first;
 }
 
+std::optional<std::size_t> Mechanics::joint_of(const Piecewise& function, double t) {
+    for (std::size_t j = 0; j < joints(); ++j) {
+        bool found = false;
+        Contact& c = contacts_[j];
+        for (Signal* s : {&loads_[j], &c.sliding[0], &c.sliding[1], &c.holding[0], &c.holding[1], &c.normal}) {
+            s->for_each_piecewise(t, [&](const Piecewise& each) { found = found || &each == &function; });
+        }
+        if (found) return j;
+    }
+    return {};
+}
+
 double Mechanics::view(double t, double spacing) const {
     double least = model::never;
     for_each_signal([&](const Signal& s) { least = std::min(least, s.view(t, spacing)); });

@@ -297,6 +297,8 @@ public:
             std::find_if(rates_.begin(), rates_.end(), [&rate](const Piecewise& each) { return &each == &rate; });
         return found == rates_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - rates_.begin()));
     }
+    /// The joint of which this function is a load, a limit of friction or the normal load.
+    [[nodiscard]] std::optional<std::size_t> joint_of(const Piecewise& function, double t);
     /// Passes the direction of sliding to users' friction laws.
     void let_laws_act(const Mode& mode) {
         for (std::size_t j = 0; j < contacts_.size(); ++j) {

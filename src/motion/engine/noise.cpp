@@ -21,7 +21,7 @@ Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
     std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n), may_be_rough_.end(), 1);
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
         const model::Joint& joint = mechanics.system().joints[j];
-        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.function == nullptr &&
+        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.is_constant() &&
             !joint.friction.law.depends_on_speed())
             continue;
         for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;

@@ -4,8 +4,7 @@
 
 namespace dinal::motion::engine {
 
-bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share,
-                      std::uint64_t arguments) {
+bool Piecewise::slide(const Moment& own, const Moment& beyond, std::uint64_t arguments) {
     if (law_ || function_->read() == nullptr) return false;
     auto made = std::make_shared<Slide>();
     let_go();
@@ -22,7 +21,6 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::function<dou
     if (made->condition == conditions.size() || made->beyond.conditions.empty()) return false;
     constexpr std::size_t no_step = std::numeric_limits<std::size_t>::max();
     made->conditions.assign(2, {no_step, 0, 0});
-    made->share = std::move(share);
     slide_ = std::move(made);
     return true;
 }

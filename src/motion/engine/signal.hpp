@@ -152,9 +152,8 @@ public:
     [[nodiscard]] const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
 
     /// Starts to slide along the first condition that differs between two moments on either side of it and depends on
-    /// these arguments only. Returns false if there is none.
-    bool slide(const Moment& own, const Moment& beyond, std::function<double(const Moment&)> share,
-               std::uint64_t arguments = ~std::uint64_t{0});
+    /// these arguments only. The share must be set. Returns false if there is none.
+    bool slide(const Moment& own, const Moment& beyond, std::uint64_t arguments = ~std::uint64_t{0});
     /// Also watches the other conditions. A condition counts as the same surface if its margin is below `near` and
     /// changes from one side to the other.
     void watch_others(const Moment& one_side, const Moment& other_side, double near);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -16,6 +18,42 @@ constexpr double near = 1e-9;
 constexpr double clearly_apart = 1e-12;  // relative to the difference between both sides
 constexpr double way_back = 4;           // rate at which the motion returns to the surface, in the same units
 
+constexpr double hardly = 1e-9;  // a part of a rate that does not count
+
+/// Solves for the shares with which several slides stay on their surfaces. A row has the changes of the rate of one
+/// margin by each share, and then this rate with shares 0. Where contacts hold a surface, no load moves the motion off
+/// it, and one side is used.
+std::vector<double> solve_for_shares(std::vector<std::vector<double>> rows) {
+    const std::size_t count = rows.size();
+    std::vector<double> sizes(count, std::numeric_limits<double>::min()), shares;
+    for (std::size_t k = 0; k < count; ++k) {
+        for (const double entry : rows[k]) sizes[k] = std::max(sizes[k], std::fabs(entry));
+    }
+    std::vector<std::size_t> left(count);
+    std::iota(left.begin(), left.end(), 0);
+    while (!left.empty()) {
+        const auto weight = [&](std::size_t k) { return std::fabs(rows[k][k]) / sizes[k]; };
+        const auto best = std::max_element(left.begin(), left.end(),
+                                           [&](std::size_t a, std::size_t b) { return weight(a) < weight(b); });
+        const std::size_t k = *best;
+        left.erase(best);
+        std::vector<double>& row = rows[k];
+        if (weight(k) > hardly) {
+            const double by = row[k];
+            for (double& entry : row) entry /= by;
+        } else {
+            const double share = row.back() < 0 ? 1 : 0;
+            row.assign(count + 1, 0), row[k] = 1, row.back() = -share;
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+            const double by = i == k ? 0 : rows[i][k];
+            for (std::size_t c = 0; c <= count && by != 0; ++c) rows[i][c] -= by * row[c];
+        }
+    }
+    for (const std::vector<double>& row : rows) shares.push_back(-row.back());
+    return shares;
+}
+
 bool sticks(std::size_t joint, const Now& now) {
     return now.rubs(joint) && now.mode.friction[joint].way == model::Motion::stuck && !now.mode.keeps_place(joint);
 }
@@ -23,7 +61,7 @@ bool sticks(std::size_t joint, const Now& now) {
 }  // namespace
 
 bool Slides::Sides::differ() const {
-    return beyond.rate - own.rate > 1e-9 * (std::fabs(own.rate) + std::fabs(beyond.rate));
+    return beyond.rate - own.rate > hardly * (std::fabs(own.rate) + std::fabs(beyond.rate));
 }
 
 bool Slides::Sides::drive_back() const {
@@ -38,47 +76,109 @@ std::vector<double> Slides::Sides::mixed() const {
     return rates;
 }
 
-/// Returns margin and rates of the motion with the load of one side of the surface.
-Slides::Side Slides::on(const Sliding& of, Which which, const Moment& at) const {
-    Piecewise& function = *of.function;
+template <class F>
+void Slides::Sliding::each(const F& call) const {
+    call(*function);
+    for (Piecewise* other : along) call(*other);
+}
+
+void Slides::Sliding::ask(Which which) const {
+    each([which](Piecewise& one) { one.sliding().asked = which; });
+}
+
+/// Adds the begin or end of the slide of each load, or of a rate if no load slides.
+void Slides::Sliding::tell(bool begins, std::vector<SlideChange>& changes) const {
+    for (const std::size_t loaded : joints) changes.push_back({loaded, begins});
+    if (joints.empty()) changes.push_back({std::nullopt, begins});
+}
+
+bool Slides::Sliding::has(const Piecewise& one) const {
+    return function == &one || std::find(along.begin(), along.end(), &one) != along.end();
+}
+
+/// Returns the rates of y with the sides that the sliding functions are asked for.
+std::vector<double> Slides::rates_at(const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
-    const Which before = std::exchange(function.sliding().asked, which);
     std::vector<double> loads, torques, belts(mechanics_.joints());
     for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, at.t, at.side);
     mechanics_.loads_of_time(at.t, at.side, loads);
     mechanics_.torques(at, mode_, belts, loads, torques);
     const Frame& frame = frames_.of(mode_);
-    std::vector<double> of_group(frame.groups()), offsets(n);
+    std::vector<double> of_group(frame.groups()), offsets(n), rates(at.y.size());
     if (mechanics_.has_belts()) {
         for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mode_.holds(j) ? belt_rate(j, at) : 0;
         frame.offsets(belts, mode_, offsets);
     }
-    Side side;
-    side.rates.assign(at.y.size(), 0);
     for (std::size_t i = 0; i < n; ++i) {
         const double own = torques[i] - mechanics_.system().bodies[i].inertia * offsets[i];
         for (const auto& [group, by] : frame.bodies[i]) of_group[group] += by * own;
     }
     for (std::size_t i = 0; i < n; ++i) {
-        side.rates[i] = at.y[n + i], side.rates[n + i] = offsets[i];
-        for (const auto& [group, by] : frame.bodies[i]) {
-            side.rates[n + i] += by * (of_group[group] / frame.inertia[group]);
-        }
+        rates[i] = at.y[n + i], rates[n + i] = offsets[i];
+        for (const auto& [group, by] : frame.bodies[i]) rates[n + i] += by * (of_group[group] / frame.inertia[group]);
     }
-    if (mechanics_.states() > 0) mechanics_.rates(at, side.rates.data() + 2 * n, &mode_);
-    function.sliding().asked = before;
-    std::tie(side.margin, side.rate) = function.margin(at, side.rates);
+    if (mechanics_.states() > 0) mechanics_.rates(at, rates.data() + 2 * n, &mode_);
+    return rates;
+}
+
+/// Returns the margin of a slide with these rates of y.
+Slides::Side Slides::side_of(const Sliding& of, const Moment& at, std::vector<double> rates) const {
+    Side side{.rates = std::move(rates)};
+    std::tie(side.margin, side.rate) = of.function->margin(at, side.rates);
     if (of.of_place) {
         constexpr double stretch = 1e-4;  // in time units of the motion
         side.off = side.margin, side.speed = side.rate;
         side.margin = 2 * side.speed + way_back / unit_ * side.off;
-        side.rate = function.margin_bend(at, side.rates, n, stretch * unit_);
+        side.rate = of.function->margin_bend(at, side.rates, mechanics_.bodies(), stretch * unit_);
     }
     return side;
 }
 
+/// Evaluates what each slide changes. All rates are linear in the shares.
+Slides::Mixing Slides::mixing(std::vector<const Sliding*> of, const Moment& at) const {
+    Mixing all{.of = std::move(of)};
+    std::vector<Which> before;
+    for (const Sliding* each : all.of) before.push_back(each->function->sliding().asked), each->ask(Which::own);
+    all.own = rates_at(at);
+    for (const Sliding* each : all.of) {
+        each->ask(Which::beyond);
+        all.beyond.push_back(rates_at(at));
+        each->ask(Which::own);
+    }
+    for (std::size_t k = 0; k < all.of.size(); ++k) all.of[k]->ask(before[k]);
+    return all;
+}
+
+/// Adds to the rates what keeps the slides `staying` on their surfaces. Returns their shares.
+std::vector<double> Slides::keep(const Mixing& all, const std::vector<std::size_t>& staying, const Moment& at,
+                                 std::vector<double>& rates) const {
+    std::vector<std::vector<double>> rows;
+    for (const std::size_t k : staying) {
+        std::vector<double>& row = rows.emplace_back();
+        const Side without = side_of(*all.of[k], at, rates);
+        const double own = side_of(*all.of[k], at, all.own).rate;
+        for (const std::size_t j : staying) row.push_back(side_of(*all.of[k], at, all.beyond[j]).rate - own);
+        row.push_back(without.rate + way_back / unit_ * without.margin);
+    }
+    std::vector<double> shares = solve_for_shares(std::move(rows));
+    for (std::size_t j = 0; j < staying.size(); ++j) {
+        for (std::size_t i = 0; i < rates.size(); ++i) rates[i] += shares[j] * (all.beyond[staying[j]][i] - all.own[i]);
+    }
+    return shares;
+}
+
+/// Returns both sides of a slide, while all others stay on their surfaces.
 Slides::Sides Slides::both(const Sliding& of, const Moment& at) const {
-    return {on(of, Which::own, at), on(of, Which::beyond, at)};
+    std::vector<const Sliding*> slides{&of};
+    for (const Sliding& each : sliding_) {
+        if (each.function != of.function) slides.push_back(&each);
+    }
+    std::vector<std::size_t> others(slides.size() - 1);
+    std::iota(others.begin(), others.end(), 1);
+    const Mixing all = mixing(std::move(slides), at);
+    std::vector<double> own = all.own, beyond = all.beyond.front();
+    keep(all, others, at, own), keep(all, others, at, beyond);
+    return {side_of(of, at, std::move(own)), side_of(of, at, std::move(beyond))};
 }
 
 double Slides::belt_rate(std::size_t joint, const Moment& at) const {
@@ -95,14 +195,26 @@ double Slides::share(const Sliding& of, const Moment& at) const {
 }
 
 std::optional<Slides::Sliding> Slides::owner_of(Piecewise& function, double t) const {
-    std::optional<Sliding> owner;
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        mechanics_.loads()[j].for_each_piecewise(t, [&](Piecewise& each) {
-            if (&each == &function) owner = {.function = &function, .joint = j};
-        });
+    const auto joint = mechanics_.joint_of(function, t);
+    if (!joint && !mechanics_.state_of(function)) return {};
+    return Sliding{.function = &function, .joint = joint};
+}
+
+/// Returns whether two functions slide along the same surface: whether the gradients of their margins are parallel.
+bool Slides::is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at) {
+    constexpr double nearly = 1 - 1e-12;
+    std::vector<double> rates(at.y.size(), 0);
+    const double of_time = one.margin(at, rates).second, of_time_of_other = other.margin(at, rates).second;
+    double square = of_time * of_time, square_of_other = of_time_of_other * of_time_of_other;
+    double product = of_time * of_time_of_other;
+    for (double& rate : rates) {
+        rate = 1;
+        const double slope = one.margin(at, rates).second - of_time;
+        const double slope_of_other = other.margin(at, rates).second - of_time_of_other;
+        rate = 0;
+        square += slope * slope, square_of_other += slope_of_other * slope_of_other, product += slope * slope_of_other;
     }
-    if (mechanics_.state_of(function)) owner = {.function = &function, .joint = std::nullopt};
-    return owner;
+    return std::fabs(product) >= nearly * std::sqrt(square) * std::sqrt(square_of_other);
 }
 
 /// Moves velocities and states, at a place velocities and angles, onto the surface, along the difference of both sides'
@@ -122,7 +234,7 @@ void Slides::put_on_surface(const Sliding& of, const Sides& sides, Now& now, dou
 
 /// If rates are given, evaluates both sides slightly later on the motion, so that a condition that was just crossed has
 /// its new decision.
-std::optional<Slides::Sides> Slides::decide(const Sliding& of, const Now& now, const std::vector<double>& rates) {
+std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const std::vector<double>& rates) {
     const double later = rates.empty() ? 0 : 10 * near;
     const std::size_t n = mechanics_.bodies();
     std::vector<double> one_side = now.y;
@@ -151,15 +263,33 @@ std::optional<Slides::Sides> Slides::decide(const Sliding& of, const Now& now, c
     }
     const Moment here = now.here();
     const double t = here.t + later * unit_;
-    const auto share_at = [this, of](const Moment& at) { return share(of, at); };
     const std::size_t bits = mechanics_.system().named ? n : 1;
     const std::uint64_t angles = bits < 64 ? (std::uint64_t{1} << bits) - 1 : 0, all = ~std::uint64_t{0};
-    if (!of.function->slide({t, here.side, one_side}, {t, here.side, other_side}, share_at, of.of_place ? angles : all))
-        return {};
+    const Moment own{t, here.side, one_side}, beyond{t, here.side, other_side};
+    const auto slides = [&](Piecewise& each) { return each.slide(own, beyond, of.of_place ? angles : all); };
+    if (!slides(*of.function)) return {};
+    of.along.clear();
+    mechanics_.for_each_piecewise(here.t, [&](Piecewise& each) {
+        if (each.is_law() || &each == of.function || slide_of(each) != sliding_.end()) return;
+        const Piecewise before = each;
+        if (slides(each) && is_same_surface(*of.function, each, here)) {
+            of.along.push_back(&each);
+        } else {
+            each = before;
+            if (each.slides()) each.let_go();
+        }
+    });
+    of.joints.clear();
+    of.each([&](Piecewise& each) {
+        each.sliding().share = [this, of](const Moment& at) { return share(of, at); };
+        const auto loaded = mechanics_.joint_of(each, here.t);
+        if (loaded && std::find(of.joints.begin(), of.joints.end(), *loaded) == of.joints.end())
+            of.joints.push_back(*loaded);
+    });
     Sides sides = both(of, here);
     const double fastest =
         std::max(std::fabs(sides.own.rate), std::fabs(sides.beyond.rate)) * (of.of_place ? unit_ : 1);
-    of.function->watch_others({t, here.side, one_side}, {t, here.side, other_side}, near * unit_ * fastest);
+    of.each([&](Piecewise& each) { each.watch_others(own, beyond, near * unit_ * fastest); });
     return sides;
 }
 
@@ -170,7 +300,7 @@ bool Slides::stands(Piecewise& function, const Now& now) const {
 
 /// Finds the sides of a slide. If a sticking contact holds the velocities of the surface, it must be about to slip
 /// along it in one direction.
-std::optional<Slides::Sides> Slides::meet(const Sliding& of, const Now& now, const std::vector<double>& rates) {
+std::optional<Slides::Sides> Slides::meet(Sliding& of, const Now& now, const std::vector<double>& rates) {
     mode_ = now.mode;
     const bool holds = of.joint && sticks(*of.joint, now);
     if (holds && of.of_place) return {};
@@ -209,49 +339,57 @@ bool Slides::passes_fade(const Sliding& of, const Now& now, const Sides& sides) 
     return back <= (1 + rounded) * out;
 }
 
+/// All functions as they are now.
+std::vector<std::pair<Piecewise*, Piecewise>> Slides::all_functions(double t) {
+    std::vector<std::pair<Piecewise*, Piecewise>> all;
+    mechanics_.for_each_piecewise(t, [&all](Piecewise& each) { all.emplace_back(&each, each); });
+    return all;
+}
+
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& crossing, Now& now) {
-    constexpr std::size_t most = 2;  // evaluating one slide evaluates the others
-    if (sliding_.size() >= most) return {};
     auto owner = owner_of(function, now.t.hi);
     if (!owner || (crossing.of_place && !owner->joint)) return {};
     owner->jump = crossing.jump, owner->of_place = crossing.of_place;
-    const Piecewise before = function;
+    const auto before = all_functions(now.t.hi);
     const Now then = now;
     const auto no = [&] {
-        function = before, now = then;
+        for (const auto& [each, was] : before) *each = was;
+        now = then;
         return std::nullopt;
     };
     const auto first = meet(*owner, now, crossing.rates);
     if (!first || (owner->of_place && !passes_fade(*owner, now, *first))) return no();
-    Begun begun{owner->joint, 0};
+    Begun begun;
     put_on_surface(*owner, *first, now, begun.work);
     const auto sides = decide(*owner, now, first->mixed());
     if (!sides || !sides->drive_back()) return no();
     sliding_.push_back(*owner);
+    owner->tell(true, begun.changes.slides);
+    owner->each([&](Piecewise& each) { begun.changes.functions.push_back(&each); });
     return begun;
 }
 
 void Slides::start(Piecewise& function, Now& now) {
     if (!stands(function, now)) return;
-    const Piecewise before = function;
+    const auto before = all_functions(now.t.hi);
     Sliding of = *owner_of(function, now.t.hi);
     of.jump = mechanics_.size_of(*of.joint, now.here());
     const auto sides = meet(of, now, {});
-    function = before;
+    for (const auto& [each, was] : before) *each = was;
     if (sides && sides->own.margin == 0) begin(function, {.jump = of.jump}, now);
 }
 
-void Slides::drop(const Piecewise& function) {
-    sliding_.erase(std::find_if(sliding_.begin(), sliding_.end(),
-                                [&](const Sliding& each) { return each.function == &function; }));
+std::vector<Slides::Sliding>::iterator Slides::slide_of(const Piecewise& function) {
+    return std::find_if(sliding_.begin(), sliding_.end(), [&](const Sliding& each) { return each.has(function); });
 }
 
 /// Moves all slides onto the pieces behind a break.
 void Slides::renew(Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {
-        drop(*was.function);
+        sliding_.erase(slide_of(*was.function));
         if (begin(*was.function, {.jump = was.jump, .of_place = was.of_place}, now)) continue;
-        was.function->let_go(), changes.push_back({was.joint, false});
+        was.each([](Piecewise& each) { each.let_go(); });
+        was.tell(false, changes);
     }
 }
 
@@ -260,16 +398,16 @@ void Slides::end_lost(const Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {
         const Sides sides = both(was, now.here());
         if (sides.differ()) continue;
-        drop(*was.function);
-        was.function->leave(sides.own.rate < 0 ? 1 : 0);
-        left_at_ = now.t.hi, left_ = was.function;
-        changes.push_back({was.joint, false});
+        sliding_.erase(slide_of(*was.function));
+        was.each([&](Piecewise& each) { each.leave(sides.own.rate < 0 ? 1 : 0); });
+        left_at_ = now.t.hi, left_ = was;
+        was.tell(false, changes);
     }
 }
 
 /// The rates of y along another condition of a slide that is crossed: those of the mixture that stays on it, if the
 /// loads move the motion across it.
-std::optional<std::vector<double>> Slides::rates_along(const Sliding& of, std::size_t condition, const Now& now,
+std::optional<std::vector<double>> Slides::rates_along(const Piecewise& function, std::size_t condition, const Now& now,
                                                        const Sides& sides) const {
     const double later = 10 * near * unit_;
     const auto with = [&](double more) {
@@ -280,7 +418,7 @@ std::optional<std::vector<double>> Slides::rates_along(const Sliding& of, std::s
     const auto margin = [&](double more) {
         std::vector<double> y = with(more), margins;
         for (std::size_t k = 0; k < y.size(); ++k) y[k] = now.y[k] + later * y[k];
-        of.function->margins({now.t.hi + later, engine::Side::at, y}, margins);
+        function.margins({now.t.hi + later, engine::Side::at, y}, margins);
         return margins[condition];
     };
     const double none = margin(0), whole = margin(1), more = none / (none - whole);
@@ -288,29 +426,33 @@ std::optional<std::vector<double>> Slides::rates_along(const Sliding& of, std::s
     return with(more);
 }
 
-bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes) {
-    const auto found = std::find_if(sliding_.begin(), sliding_.end(),
-                                    [&](const Sliding& sliding) { return sliding.function == &function; });
+bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, Changes& changes) {
+    const auto found = slide_of(function);
     if (found == sliding_.end()) return false;
-    const Sliding was = *found;
+    Sliding was = *found;
     const Sides before = both(was, now.here());
     sliding_.erase(found);
+    was.each([&](Piecewise& each) { changes.functions.push_back(&each); });
     if (condition > 1 && before.differ()) {  // both sides may have a new piece on which the slide continues
         const std::vector<double> rates = before.mixed();
-        const auto along = rates_along(was, condition, now, before);
-        if (begin(function, {was.jump, was.of_place, rates}, now)) return true;
-        if (along && begin(function, {was.jump, false, *along}, now)) return true;
+        const auto along = rates_along(function, condition, now, before);
+        if (begin(*was.function, {was.jump, was.of_place, rates}, now)) return true;
+        if (along && begin(*was.function, {was.jump, false, *along}, now)) return true;
         const auto sides = decide(was, now, rates);
         if (sides) condition = sides->own.rate < 0 ? 1 : 0;
     }
-    function.leave(condition);
-    changes.push_back({was.joint, false});
+    was.each([condition](Piecewise& each) { each.leave(condition); });
+    if (condition <= 1) left_at_ = now.t.hi, left_ = was;
+    was.tell(false, changes.slides);
     return true;
 }
 
 std::vector<SlideChange> Slides::end() {
     std::vector<SlideChange> changes;
-    for (const Sliding& sliding : sliding_) sliding.function->let_go(), changes.push_back({sliding.joint, false});
+    for (const Sliding& sliding : sliding_) {
+        sliding.each([](Piecewise& each) { each.let_go(); });
+        sliding.tell(false, changes);
+    }
     sliding_.clear();
     return changes;
 }

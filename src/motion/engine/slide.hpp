@@ -27,9 +27,14 @@ public:
     [[nodiscard]] bool any() const { return !sliding_.empty(); }
     /// Returns whether the joint loaded by the function sticks.
     [[nodiscard]] bool stands(Piecewise& function, const Now& now) const;
+    /// Slides that begin or end, and all functions in them.
+    struct Changes {
+        std::vector<SlideChange> slides{};
+        std::vector<const Piecewise*> functions{};
+    };
     struct Begun {
-        std::optional<std::size_t> joint;  ///< joint of the load; none: a rate
-        double work;                       ///< work done by the load when velocities were moved onto the surface
+        Changes changes{};
+        double work = 0;  ///< work done by the loads when velocities were moved onto the surface
     };
     /// What is known of a condition that was crossed.
     struct Crossing {
@@ -46,7 +51,7 @@ public:
     void end_lost(const Now& now, std::vector<SlideChange>& changes);
     /// Returns whether contacts have ended a slide of this function at this time, so that its side is known.
     [[nodiscard]] bool just_left(const Piecewise& function, double t) const {
-        return left_ == &function && left_at_ == t;
+        return left_at_ == t && left_.has(function);
     }
     /// Continues slides behind a break, or ends them if they are none there.
     void renew(Now& now, std::vector<SlideChange>& changes);
@@ -54,7 +59,7 @@ public:
     void start(Piecewise& function, Now& now);
     /// Handles a changed condition of a slide: ends the slide, or continues it if the condition belongs to one side's
     /// piece. Returns false if this function does not slide.
-    bool leave(Piecewise& function, std::size_t condition, Now& now, std::vector<SlideChange>& changes);
+    bool leave(Piecewise& function, std::size_t condition, Now& now, Changes& changes);
     /// Ends all slides, for use when all functions are decided anew. Returns them.
     std::vector<SlideChange> end();
 
@@ -77,33 +82,55 @@ private:
     /// The right-hand acceleration of the belt of a joint.
     [[nodiscard]] double belt_rate(std::size_t joint, const Moment& at) const;
 
+    /// Functions that jump at one surface, and so have one share.
+    struct Sliding {
+        Piecewise* function = nullptr;
+        std::optional<std::size_t> joint{};  ///< joint of the load; none: a rate
+        double jump = 0;                     ///< jump of the function at the surface
+        bool of_place = false;
+        std::vector<Piecewise*> along{};    ///< the other functions
+        std::vector<std::size_t> joints{};  ///< joints of all loads among them
+
+        template <class F>
+        void each(const F& call) const;
+        [[nodiscard]] bool has(const Piecewise& one) const;
+        void ask(Piecewise::Slide::Side which) const;
+        void tell(bool begins, std::vector<SlideChange>& changes) const;
+    };
+    [[nodiscard]] bool passes_fade(const Sliding& of, const Now& now, const Sides& sides);
+    [[nodiscard]] std::vector<double> rates_at(const Moment& at) const;
+    [[nodiscard]] Side side_of(const Sliding& of, const Moment& at, std::vector<double> rates) const;
+    /// The rates of y with the own sides of all slides, and with one of them beyond its surface.
+    struct Mixing {
+        std::vector<const Sliding*> of;
+        std::vector<double> own{};
+        std::vector<std::vector<double>> beyond{};
+    };
+    [[nodiscard]] Mixing mixing(std::vector<const Sliding*> of, const Moment& at) const;
+    std::vector<double> keep(const Mixing& all, const std::vector<std::size_t>& staying, const Moment& at,
+                             std::vector<double>& rates) const;
+    [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
+    [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
+    [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
+    [[nodiscard]] static bool is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at);
+    [[nodiscard]] std::vector<std::pair<Piecewise*, Piecewise>> all_functions(double t);
+    [[nodiscard]] std::vector<Sliding>::iterator slide_of(const Piecewise& function);
+    /// Makes the functions slide that jump along the condition that differs between both sides, with the pieces
+    /// slightly later on a motion with these rates, or at present without rates. Empty if no condition differs.
+    [[nodiscard]] std::optional<Sides> decide(Sliding& of, const Now& now, const std::vector<double>& rates);
+    /// Returns the sides if both drive the motion back, otherwise empty.
+    [[nodiscard]] std::optional<Sides> meet(Sliding& of, const Now& now, const std::vector<double>& rates);
+    void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
+    [[nodiscard]] std::optional<std::vector<double>> rates_along(const Piecewise& function, std::size_t condition,
+                                                                 const Now& now, const Sides& sides) const;
+
     Mechanics& mechanics_;
     Frames& frames_;
     double unit_;
     Mode mode_;
-    struct Sliding {
-        Piecewise* function;
-        std::optional<std::size_t> joint;  ///< joint of the load; none: a rate
-        double jump = 0;                   ///< jump of the function at the surface
-        bool of_place = false;
-    };
-    [[nodiscard]] bool passes_fade(const Sliding& of, const Now& now, const Sides& sides);
-    [[nodiscard]] Side on(const Sliding& of, Piecewise::Slide::Side which, const Moment& at) const;
-    [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
-    [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
-    [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
-    /// Makes the function slide along the condition that differs between both sides, with the pieces slightly later on
-    /// a motion with these rates, or at present without rates. Empty if no condition differs.
-    [[nodiscard]] std::optional<Sides> decide(const Sliding& of, const Now& now, const std::vector<double>& rates);
-    /// Returns the sides if both drive the motion back, otherwise empty.
-    [[nodiscard]] std::optional<Sides> meet(const Sliding& of, const Now& now, const std::vector<double>& rates);
-    void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
-    [[nodiscard]] std::optional<std::vector<double>> rates_along(const Sliding& of, std::size_t condition,
-                                                                 const Now& now, const Sides& sides) const;
-    void drop(const Piecewise& function);
     std::vector<Sliding> sliding_;
-    const Piecewise* left_ = nullptr;  ///< the function whose slide contacts ended last
-    double left_at_ = -model::never;   ///< when they did
+    Sliding left_;                    ///< the slide that contacts ended last
+    double left_at_ = -model::never;  ///< when they did
 };
 
 }  // namespace dinal::motion::engine

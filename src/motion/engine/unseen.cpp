@@ -431,15 +431,17 @@ std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
         double angle = 0, slip = -s.belts[j][0];
         for (const auto& [body, by] : joint.of) angle += by * s.y[body][0], slip += by * s.y[n + body][0];
         slip *= model::sign_of(mode.friction[j].way);
-        const bool alone = joint.friction.function == nullptr;
+        const bool alone = joint.friction.function == nullptr, slides = mode.friction[j].way != model::Motion::stuck;
         for (const auto& [body, by] : joint.of) {
-            mechanics_.loads()[j].for_each_read(
-                t, [&, k = body, per = by](model::Formula& formula, const auto* piece, double delay, double gain) {
-                    add_of(k, per * gain, formula, piece, t - delay, nullptr);
+            const auto add_read = [&, k = body, per = by](const Signal& signal, double torque) {
+                signal.for_each_read(t, [&](model::Formula& formula, const auto* piece, double delay, double gain) {
+                    add_of(k, per * torque * gain, formula, piece, t - delay, nullptr);
                 });
+            };
+            add_read(mechanics_.loads()[j], 1);
+            if (slides) mechanics_.for_each_friction(j, mode, s.moment(0, point_), add_read);
             add_asked(body, mechanics_.asked_spring(j), angle, nullptr);
-            if (mode.friction[j].way != model::Motion::stuck)
-                add_asked(body, mechanics_.asked_law(j), alone ? slip : t, alone ? nullptr : &slip);
+            if (slides) add_asked(body, mechanics_.asked_law(j), alone ? slip : t, alone ? nullptr : &slip);
         }
     }
     return of;
