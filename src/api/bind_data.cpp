@@ -978,7 +978,7 @@ void add_overlays(lua_State* L, const lua::Options& options, const Data& data, c
 }
 
 int plot_curves(lua_State* L, const lua::Options& options, const Data& data, DrawnColumns columns) {
-    if (options.has("zlim")) options.fail("zlim", "zlim is for maps: name a column z, too");
+    if (!options.numbers("zlim").empty()) options.fail("zlim", "zlim is for maps: name a column z, too");
     const std::string& x = columns.x;
     std::vector<std::string>& y = columns.y;
     plots::Figure figure;

@@ -51,7 +51,7 @@ world.fit = identify { data = world.sys:simulate { theta0 = 1, t_end = 3, dt = 0
 world.r = report { title = "x" }
 world.d = data { r = { 1, 2 }, A = { 3, 4 } }
 world.f = function() return 1 end
-local record = os.tmpname()
+local record, animation = os.tmpname(), temporary ".svg"
 assert(io.open(record, "w")):write("t,M\n0,1\n1,2\n"):close()
 
 --- The example in the sentence that refuses a call without a table.
@@ -122,6 +122,7 @@ for heading, options in pairs(calls) do
                     if heading:find "plot" then
                         t.file, t.show = nil, false -- nothing is to be drawn where a test forgets to fail
                     end
+                    if heading == "run:animate" then t.file = animation end
                     owner[option.name] = value
                     if partner(option) then
                         owner[partner(option)] = nil
