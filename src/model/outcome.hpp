@@ -14,8 +14,8 @@ namespace dinal::model {
     X(state_not_finite, "the state became infinite: unstable system, feedback or step")                   \
     X(excitation_not_finite, "M failed or became infinite")                                               \
     X(not_a_function, "M depends on more than its arguments: evaluated again, it returned another value") \
-    X(unresolved, "M never becomes smooth: try a larger tolerance, or rk4")                               \
-    X(chattering, "switched endlessly at one time: a jump of M or friction chatters; a steep line would not")
+    X(unresolved, "the motion is not resolved at this time: try a larger tolerance, or rk4")              \
+    X(chattering, "switched endlessly at one time")
 
 enum class Outcome {
 #define DINAL_OUTCOME(id, sentence) id,

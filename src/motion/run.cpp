@@ -9,6 +9,8 @@
 #include <iterator>
 #include <span>
 
+#include "model/laws/tabulated.hpp"
+#include "model/laws/user_law.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
@@ -114,6 +116,11 @@ text::Expected<model::State> Run::at(double t) const {
 
 namespace {
 
+/// Returns whether the law may jump, or be as steep as a jump, above speed 0.
+bool may_jump(const model::Friction& law) {
+    return law.as<model::laws::UserLaw>() != nullptr || law.as<model::laws::Tabulated>() != nullptr;
+}
+
 /// Says where the run switched endlessly, and the remedy.
 std::string chatter_text(const Run& run) {
     if (run.rough) {
@@ -131,7 +138,7 @@ std::string chatter_text(const Run& run) {
             return "a relay switches endlessly at one time: its on and off are too close";
         }
     }
-    if (run.course && run.course->system().friction().depends_on_speed() && !run.on_belt) {
+    if (run.course && may_jump(run.course->system().friction()) && !run.on_belt) {
         constexpr double next_to_none = 1e-6;  // part of the greatest speed in the rows that counts as 0
         double fastest = std::fabs(run.initial.velocity);
         for (Eigen::Index i = 0; i < run.size(); ++i) fastest = std::max(fastest, std::fabs(run.rows(i, 2)));
@@ -140,6 +147,10 @@ std::string chatter_text(const Run& run) {
             "switched endlessly at one time: it chatters at speed {:.6g}, where the law of friction (or M) jumps or "
             "is too steep; a line over some small range of speeds would not",
             speed > next_to_none * fastest ? speed : 0.0);
+    }
+    if (run.jumps == 0) {
+        return "switched endlessly at one time, where no jump was located: if a function jumps there, a steep line or "
+               "tanh would not, nor excitation.sampled or excitation.relay; otherwise try integrator.rk4";
     }
     if (run.states > 0) {  // the cause may also be a jump in the rate of a state
         return "switched endlessly at one time: a jump of M, of friction or of the rate of a state chatters; a steep "
