@@ -250,6 +250,17 @@ test("a mass that a pulse moves less each period comes to hold, alone and beside
     run = rig:simulate{ M = { a = function(t) return t % T < 0.37 * T and M0 or -M0 / 2 end }, t_end = 400 * T }
     equal(run.t_end, 400 * T)
     near(M0 - 4.929986288115886 * run.a.theta[#run] - 0.8046054384790812, 0, 1e-9)
+
+    -- Here a body and the freewheel behind it leave together.
+    rig = system{ bodies = {
+        a = { I = 1.2348302392074664, k = 7.067505931356604, C = 0.1601099096238591, friction = friction.stribeck{ Rd = 0.7431162703298131, Re = 0.8286578402037739, speed = 0.5105445003479095 } },
+        b = { I = 1.8312269716371588, k = 7.067505931356604, C = 0.1784696596834161, friction = friction.stribeck{ Rd = 0.7360226583113975, Re = 0.8796659446932642, speed = 0.32106061224699917 } },
+        c = { I = 1.7138111173793802, C = 0.05319277253916215, Rd = 0.43160320673749775, Re = 0.4474096104546757 } }, links = {
+        l2 = { "a", "b", k = 4.404089616193799, C = 0.17476691211073508 },
+        l3 = { "b", "c", k = 1.3183152629880002, C = 0.16569778919233047, friction = friction.freewheel{ Rd = 0.15217480957969656 } } } }
+    local T, M0, part = 1.009509094013, 1.1213688179364354, 0.49062246478712
+    run = rig:simulate{ M = { b = function(t) return t % T < part * T and M0 or 0 end }, t_end = 300 * T }
+    equal(run.t_end, 300 * T)
 end)
 
 finish()

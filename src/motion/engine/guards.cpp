@@ -76,6 +76,29 @@ double Guards::fastest(std::size_t joint) const {
     return sum;
 }
 
+/// Returns the inertia of a joint's lightest body, as the joint feels it.
+double Guards::least_inertia(std::size_t joint) const {
+    double inertia = model::never;
+    for (const auto& [body, by] : joint_at(joint).of) {
+        inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
+    }
+    return inertia;
+}
+
+/// Returns whether all joints that leave slip 0 were released by less than the rounding of their torques, and so do not
+/// move.
+bool Guards::none_leaves() const {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        if (!now_.mode.friction[j].leaving) continue;
+        Nodes slips = mechanics_.slips(j, segment_.y, segment_.belts[j]);
+        for (const double first = slips[0]; double& slip : slips) slip -= first;
+        const double by_rounding = 2 * segment_.h / least_inertia(j) * rounding * of_.sizes.on(joint_at(j));
+        constexpr double few = 4;
+        if (now_.mode.leans[j] != 0 || greatest(slips) > few * by_rounding) return false;
+    }
+    return true;
+}
+
 void Guards::watch_slip(std::size_t joint) {
     if (!slides(joint)) return;
     const Joint& own = joint_at(joint);
@@ -94,10 +117,7 @@ void Guards::watch_slip(std::size_t joint) {
     }
     series[0] += first;
     const double fastest = this->fastest(joint);
-    double inertia = model::never;
-    for (const auto& [body, by] : own.of) {
-        inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
-    }
+    const double inertia = least_inertia(joint);
     // The joint may creep if its motion over the stretch is slower than rounding of its torques explains, or too small
     // to change the angle.
     const double drive = fastest * (own.damping + inertia / (2 * segment_.h)) / (rounding * torques);
@@ -130,8 +150,7 @@ void Guards::watch_slip(std::size_t joint) {
         curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
         zero = cheb::first_below(curve, -1, true, always);
     }
-    // A joint that was released by less than the rounding of its torques does not move at all.
-    if (how.leaving && greatest(slips) == 0) zero = -1;
+    if (how.leaving && none_leaves()) zero = -1;
     // A zero beyond the end by no more than the rounding of the time is at the end.
     const double late = segment_.to_the_end ? 64 * rounding * std::fabs(segment_.end) / segment_.h : 0;
     if (!zero && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;

@@ -69,6 +69,8 @@ private:
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
     [[nodiscard]] double soon() const;
     [[nodiscard]] double fastest(std::size_t joint) const;
+    [[nodiscard]] double least_inertia(std::size_t joint) const;
+    [[nodiscard]] bool none_leaves() const;
     [[nodiscard]] bool slides(std::size_t joint) const;
     [[nodiscard]] bool may_creep(std::size_t joint) const;
     [[nodiscard]] Nodes limit(std::size_t joint, model::Motion side) const;
