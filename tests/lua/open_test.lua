@@ -117,4 +117,18 @@ test("a small spring torque lets the mass slip right before its contact opens, e
     end
 end)
 
+test("a contact that closes beside a loop of contacts that hold stays at rest", function()
+    local rig = system {
+        bodies = { a = { I = 1.6, k = 3, Rd = 1.33 }, b = { I = 0.65, k = 3, Rd = 1.23 }, c = { I = 1.7, k = 3 } },
+        links = { ab = { "a", "b", k = 4.9, Rd = 0.43 }, bc = { "b", "c", k = 1.2, Rd = 0.44, normal = function(t) return 1 + 1.3 * math.sin(t) end } } }
+    local run = rig:simulate { M = { a = function(t) return 0.5 * math.sin(1.6 * t) end }, t_end = 20 }
+    equal(run.t_end, 20)
+    for i, event in ipairs(run.events:filter(function(e) return e.kind ~= "stick" end)) do
+        local round = (i - 1) // 2 * 2 * math.pi
+        equal(event.kind, i % 2 == 1 and "open" or "close")
+        near(event.t, round + (i % 2 == 1 and math.pi + math.asin(1 / 1.3) or 2 * math.pi - math.asin(1 / 1.3)), 1e-12)
+    end
+    equal(run.c.theta:abs():max(), 0)
+end)
+
 finish()
