@@ -1350,8 +1350,7 @@ constexpr lua::Member fit_members[] = {
       "values have 0. They are wider if neighbouring residuals are alike, or if the residual hints at something that the "
       "model lacks (another law of friction, a nonlinear spring, a drifting zero): by how far that would move each value. "
       "They are nil if the model is so wrong that they would mean nothing (fit.misfit), and of the names in fit.silent. "
-      "What the record cannot show they do "
-      "not contain: friction that falls evenly with the speed looks like more Rd and less C.",
+      "What the record cannot show they do not contain: friction that falls evenly with the speed looks like more Rd and less C.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_value<FitHandle, &FitAnswer::cautious>,
      {"fit.cautious_error -> table",

@@ -380,14 +380,16 @@ void Flow::note(const Segment& s, const Series& series, double scale, double all
 
 /// Returns the possible error of the torques on a body due to the rounding of times far from t = 0: of its loads, and
 /// of friction that changes in time.
-double Flow::lost_of_loads(const Segment& s, std::size_t body) const {
+double Flow::lost_of_torques(const Segment& s, std::size_t body) const {
     double sum = 0;
     bool friction_changes = false;
     for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const bool acts = j == body || (!mechanics_.loads()[j].none() && joint.is_on(body));
         if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late(s), s.h, sizes_.all[body]);
-        friction_changes = friction_changes || (!joint.friction.is_constant() && joint.is_on(body));
+        const model::ContactFriction& rubs = joint.friction;
+        const bool of_time = rubs.normal || rubs.function != nullptr || rubs.sliding[0] || rubs.sliding[1];
+        friction_changes = friction_changes || (of_time && joint.is_on(body));
     }
     if (friction_changes) sum += lost_in_time(cheb::fit(s.torques[body]), late(s), s.h, sizes_.all[body]);
     return sum;
@@ -406,14 +408,14 @@ void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, 
             const double size = h * cheb::size(series), tail = h * cheb::tail(series);
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
-            if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_loads(s, i);
+            if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_torques(s, i);
             allowed += per_torque * noise_.of_torques() + others;
             note(s, series, h, allowed);
             allowed_[i] = allowed / h;
         } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise the joint's torques are checked instead
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
-            if (cheb::tail(series) > allowed) allowed += lost_of_loads(s, i);
+            if (cheb::tail(series) > allowed) allowed += lost_of_torques(s, i);
             note(s, series, 1, allowed);
         }
     }
