@@ -240,8 +240,9 @@ public:
         function_ = options.has("at");
         if (system_->named && !function_) {
             options.fail("at",
-                         "a system with named bodies needs at, such as "
-                         "at = function(p) return { M = { load = excitation.harmonic{ frequency = p.f } } } end");
+                         fmt::format("a system with named bodies needs at, such as at = function(p) return {{ M = {{ "
+                                     "{} = excitation.harmonic{{ frequency = p.f }} }} }} end",
+                                     system_->joints.front().name));
         }
         if (function_) place_ = push_function(L, options, "at");
         if (function_) {

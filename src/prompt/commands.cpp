@@ -278,7 +278,8 @@ void tell_unknown(std::string_view name) {
     std::vector<std::string_view> names;
     std::transform(commands.begin(), commands.end(), std::back_inserter(names),
                    [](const Command& c) { return c.name; });
-    const std::string hint = text::did_you_mean(name, names);
+    const std::string hint =
+        name == "record" ? "; :save writes your inputs to a script" : text::did_you_mean(name, names);
     say_error(fmt::format("there is no command :{}{}", name, hint.empty() ? "; :help lists them" : hint));
 }
 

@@ -260,7 +260,7 @@ test("a parameter of a response may be called like a column that has the name of
     near(c["b.amplitude"][2], 2 * c["b.amplitude"][1], 1e-9)
     refuses(function(o) rig:response(o) end, {
         { { over = { status = { 1, 2 } }, at = function() return {} end }, "'status' is a column of the result" },
-        { { over = { omega = { 1, 2 } } }, "needs at, such as at = function(p)" },
+        { { over = { omega = { 1, 2 } } }, "needs at, such as at = function(p) return { M = { a = excitation.harmonic{" },
     })
 end)
 

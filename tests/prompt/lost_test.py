@@ -37,6 +37,7 @@ class Walked(AtHome):
         ("title('x')", "plot{ { x, y }, title"),
         ("plt.plot(v)", "plot(x, y)"),
         ("save('run.mat')", 'run:save("run.csv")'),
+        (":record lab.lua", ":save writes your inputs to a script"),
         ("save run.csv", 'run:save("run.csv")'),
         ("load de.csv", 'load "file.csv"'),
         ("load 'table.xlsx'", "save the table as CSV"),
