@@ -119,7 +119,10 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
     const double holding = mechanics.limit_at_rest(joint, mode, towards, at) + mode.friction[joint].blunt;
-    if (std::isinf(holding)) return -model::never;  // the backward side of a freewheel
+    if (std::isinf(holding)) {  // a freewheel only leaves forward
+        towards = Motion::forward;
+        return pull - balance.blurred - mechanics.limit_at_rest(joint, mode, towards, at) - mode.friction[joint].blunt;
+    }
     if (mechanics.bodies() > 1 || !mechanics.is_native(joint) || mechanics.has_belts() || mechanics.states() > 0 ||
         mode.presses[joint] != 0) {
         return std::fabs(pull) - balance.blurred - holding;

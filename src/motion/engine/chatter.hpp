@@ -51,8 +51,10 @@ public:
     /// margin has grown beyond what rounding explains.
     static bool too_blunt(Slipping& how, double torques) {
         constexpr double most = 1e-9;  // relative to the torques
-        how.blunt = std::max(2 * how.blunt, 64 * rounding * torques);
-        return how.blunt > most * torques;
+        // A freewheel without friction may feel no torque at all.
+        const double size = torques + smallest / rounding;
+        how.blunt = std::max(2 * how.blunt, 64 * rounding * size);
+        return how.blunt > most * size;
     }
 
 private:

@@ -330,7 +330,7 @@ Decider::Ways Decider::take_back() {
         const Joint& joint = joint_at(j);
         double rate = joint.sum(found_.accelerations);
         const double I = mechanics_.system().bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
-        const double nothing = 64 * rounding * size(j) + between_;
+        const double nothing = 64 * rounding * size(j) + between_ + smallest;
         goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
         if (mechanics_.has_belt(j)) rate -= now().belt_slopes[j].rate;
         if (!how.leaving || model::sign_of(how.way) * rate * I >= -nothing) continue;
@@ -496,7 +496,9 @@ bool Decider::decide_together() {
             slips[k] = 1, grown = true;
             const Moment here = now().here();
             if (mode().leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
-            if (mode().leans[j] >= 0) box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here);
+            const bool one_way = joint_at(j).friction.law.is_one_way();
+            if (mode().leans[j] >= 0 && !one_way)
+                box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here);
         }
     }
     std::vector<std::size_t> gone;
