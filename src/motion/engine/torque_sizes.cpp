@@ -15,6 +15,25 @@ void TorqueSizes::find(const Mechanics& mechanics, const Segment& last, const Mo
         const double size = load + mechanics.size_of(j, at);
         for (const auto& [body, by] : mechanics.system().joints[j].of) of_bodies_[body] += std::fabs(by) * size;
     }
+    pass_on(mechanics.system());
+}
+
+/// A gear or freewheel can transmit the torques of one of its bodies to the others.
+void TorqueSizes::pass_on(const model::System& system) {
+    // One pass per joint is enough for a chain in any order.
+    for (std::size_t pass = 0; pass < system.joints.size(); ++pass) {
+        bool grown = false;
+        for (const model::Joint& joint : system.joints) {
+            if (joint.of.size() < 2 || !(joint.rigid || joint.friction.law.is_one_way())) continue;
+            double size = 0;
+            for (const auto& [body, by] : joint.of) size = std::max(size, of_bodies_[body] / std::fabs(by));
+            for (const auto& [body, by] : joint.of) {
+                grown = grown || of_bodies_[body] < std::fabs(by) * size;
+                of_bodies_[body] = std::max(of_bodies_[body], std::fabs(by) * size);
+            }
+        }
+        if (!grown) return;
+    }
 }
 
 }  // namespace dinal::motion::engine

@@ -23,6 +23,8 @@ public:
     [[nodiscard]] double on_body(std::size_t body) const { return of_bodies_[body]; }
 
 private:
+    void pass_on(const model::System& system);
+
     std::vector<double> of_bodies_;
 };
 
