@@ -68,7 +68,8 @@ bool Engine::cross(const Ending& ending) {
 
 /// Handles a slip that has reached 0, or passed it because the belt jumped.
 bool Engine::come_to_a_stop(std::size_t j) {
-    const double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.y[n()]);
+    double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side())) + greatest(segment_.belts[j]);
+    for (const auto& [body, by] : joint_at(j).of) fastest += std::fabs(by) * greatest(segment_.y[n() + body]);
     // A slip that passed zero because the belt jumped is not a standstill.
     constexpr double clearly = 1e-6;
     if (mechanics_.has_belt(j) && std::fabs(now_.slip(mechanics_, j)) > clearly * fastest && now_.mode.leans[j] == 0) {
