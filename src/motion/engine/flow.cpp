@@ -409,6 +409,7 @@ void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, 
             double allowed = tolerance_ * std::max(greatest(s.y[n_ + i]), size) +
                              64 * rounding * (size + per_torque * torques) + smallest / h;
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_torques(s, i);
+            if (tail > allowed && !frame.edges.empty()) allowed += blurred_velocity();  // held on belts
             allowed += per_torque * noise_.of_torques() + others;
             note(s, series, h, allowed);
             allowed_[i] = allowed / h;
@@ -483,11 +484,16 @@ void Flow::find_limits(Segment& s, const Mode& mode) const {
 }
 
 double Flow::blurred_by_belts(const Segment& s) const {
-    if (!mechanics_.has_belts()) return 0;
-    double fastest = 0, inertia = 0;
-    for (const double belt : fastest_.belts) fastest = std::max(fastest, belt);
+    double inertia = 0;
     for (const model::Body& body : mechanics_.system().bodies) inertia += body.inertia;
-    return inertia * (256 * rounding * fastest + fastest_.lost_by_belts) / s.h;
+    return inertia * blurred_velocity() / s.h;
+}
+
+double Flow::blurred_velocity() const {
+    if (!mechanics_.has_belts()) return 0;
+    double fastest = 0;
+    for (const double belt : fastest_.belts) fastest = std::max(fastest, belt);
+    return 256 * rounding * fastest + fastest_.lost_by_belts;
 }
 
 /// Adds points just before a body turns, where a spring or friction law may act for a very short time only.

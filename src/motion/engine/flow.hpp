@@ -72,6 +72,9 @@ public:
     void pass_over(Segment& segment) const;
     /// The possible error of torques due to the numerical slopes of belts.
     [[nodiscard]] double blurred_by_belts(const Segment& segment) const;
+    /// Returns the possible error of a velocity over a stretch due to the rounding of belt velocities, whose slopes it
+    /// integrates.
+    [[nodiscard]] double blurred_velocity() const;
     /// Computes the holding limits of sticking joints if they vary.
     void find_limits(Segment& segment, const Mode& mode) const;
 
