@@ -182,8 +182,9 @@ std::size_t body_index(const lua::Options& options, const model::System& system,
         if (system.bodies[i].name == name) return i;
     }
     const std::vector<std::string> names = body_names(system);
-    options.fail({.sentence = name.empty() ? fmt::format("links.{} must begin with the names of two bodies, such as "
-                                                         "{{ \"{}\", \"{}\", k = 90 }}",
+    options.fail({.sentence = name.empty() ? fmt::format("links.{0} must begin with the names of two bodies, such as "
+                                                         "{{ \"{1}\", \"{2}\", k = 90 }}, or give each of its bodies a "
+                                                         "weight, such as {{ {1} = 1, {2} = -2, k = 90 }}",
                                                          link, names.front(), names.back())
                                            : fmt::format("links.{}: there is no body '{}'; there is {}", link, name,
                                                          fmt::join(names, ", ")),

@@ -182,6 +182,7 @@ test("mistakes are named with the body or link, and the nearest name", function(
         { { bodies = { motor = { I = 0 } } }, "bodies.motor: I = 0 must be positive" },
         { { bodies = bodies, links = { x = "motor" } }, "links.x must be a table such as" },
         { { bodies = bodies, links = { x = { "motor", "laod" } } }, "there is no body 'laod'", "did you mean 'load'?" },
+        { { bodies = bodies, links = { x = { { motor = 1, load = -2 }, k = 3 } } }, "two bodies, such as { \"load\", \"motor\", k = 90 }, or give each of its bodies a weight, such as { load = 1, motor = -2" },
         { { bodies = bodies, links = { x = { "motor", "motor" } } }, "links.x must be between two different bodies" },
         { { bodies = bodies, links = { x = { "motor", "load", "motor" } } }, "links.x is between two bodies, and names 3" },
     })
