@@ -102,4 +102,27 @@ test("a spring that fails while the mass rests between walls ends the run with t
     raises(function() system { I = 1, k = 1, Rd = 0.1, spring = brittle, walls = { upper = 1.5 } }:simulate { theta0 = 1, t_end = 2, dt = 0.1 } end, "too far")
 end)
 
+-- A spring with preload, from starts on its jump and off it; the same torque as a part of M is the peer.
+test("a spring that jumps does what the same function does in M, and holds the mass on its jump", function()
+    local function preload(theta) return 0.4 * (theta > 0 and 1 or -1) end
+    local function drive(t) return 0.7 * math.sin(1.3 * t) end
+    for _, Rd in ipairs { 0, 0.2 } do
+        for _, theta0 in ipairs { 0, 0.7 } do
+            local options = { theta0 = theta0, t_end = 20, times = {} }
+            local loaded = system { I = 1, k = 2, C = 0.2, Rd = Rd }:simulate(merged(options, {
+                M = function(t, theta) return 0.7 * math.sin(1.3 * t) - 0.4 * (theta > 0 and 1 or -1) end }))
+            for _, with in ipairs { integrator.spectral {}, integrator.dopri5 { tolerance = 1e-9 } } do
+                local sprung = system { I = 1, k = 2, C = 0.2, Rd = Rd, spring = preload }
+                near(sprung:simulate(merged(options, { M = drive, integrator = with })):at(20), loaded:at(20), 1e-7)
+            end
+        end
+    end
+    local run = system { I = 1.6, k = 5.5, C = 8, spring = preload }:simulate { M = 0.2, theta0 = 0.05, t_end = 20 }
+    near(run:at(20), 0, 1e-12)
+    local linked = pair({ I = 1 }, { I = 1, k = 3, C = 2 }, { k = 2, C = 6, spring = preload })
+    local held = linked:simulate { M = { b = 0.3 }, t_end = 60 }
+    near(held.a:at(60) - held.b:at(60), 0, 1e-12)
+    near(held.b:at(60), 0.1, 1e-6)
+end)
+
 finish()

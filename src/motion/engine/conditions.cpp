@@ -174,7 +174,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
 /// for the held velocity: by their values a little later.
 void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again) {
     constexpr double little_later = 1e-9, next_to_none = 1e-3;
-    if (function.is_law() || function.slides() || function.conditions().empty()) return;
+    if (function.is_friction() || function.is_spring() || function.slides() || function.conditions().empty()) return;
     const std::size_t n = mechanics_.bodies();
     std::vector<double> y(at.y.begin(), at.y.end()), margins, then;
     for (std::size_t i = 0; i < n; ++i) {
@@ -197,7 +197,7 @@ bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
     std::vector<double> margins;
     mechanics_.for_each_piecewise(from.t, [&](Piecewise& function) {
         if (!clear || function.conditions().empty()) return;
-        clear = !function.is_law();
+        clear = !function.is_friction();
         if (clear) function.margins(from, margins);
         for (std::size_t c = 0; clear && c < margins.size(); ++c) {
             clear = margins[c] > 0 && function.keeps(c, ranges, mechanics_.system().named);
@@ -265,7 +265,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
 /// motion so fast, so that the crossing may be rounding of a long stretch.
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
     const auto [step, beyond, of] = function.conditions()[condition];
-    const bool of_place = function.is_law() ? function.is_spring() : is_of_angles(of);
+    const bool of_place = is_of_place(function, of);
     return last_.function == &function && last_.t == now && last_.step == step && of_place;
 }
 
@@ -301,7 +301,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         greatest_ = std::max({greatest_, std::fabs(before), jump});
         const bool clear = jump > nothing * greatest_;
         crossed.jumps = crossed.jumps || clear;
-        if (clear && !function->is_law()) ++crossed.count;
+        if (clear && !function->is_friction()) ++crossed.count;
         all_small = all_small && clear && jump < small * greatest_;
         if (!clear || (several && !soon_again)) continue;
         const bool driven_back = soon_again || slides_.stands(*function, now);

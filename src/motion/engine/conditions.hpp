@@ -74,7 +74,7 @@ public:
     /// Starts a slide along a condition on angles that was crossed back and forth, if both sides bend the motion back.
     std::optional<Slides::Begun> hold(const Crossed::Back& back, Now& now) {
         const auto& [step, beyond, of] = back.function->conditions()[back.condition];
-        if (back.function->is_law() || !is_of_angles(of)) return {};
+        if (!is_of_place(*back.function, of)) return {};
         return slides_.begin(*back.function, {.jump = back.jump, .of_place = true}, now);
     }
     /// Ends the slides of loads whose joints now stick. Returns the slides that ended since the last call.
@@ -87,7 +87,8 @@ private:
     void let_go(double t);
     void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
-    [[nodiscard]] bool is_of_angles(std::uint64_t arguments) const {
+    [[nodiscard]] bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
+        if (function.is_friction() || function.is_spring()) return function.is_spring();
         const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
         return bodies < 64 && arguments >> bodies == 0;
     }

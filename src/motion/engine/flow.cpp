@@ -206,7 +206,7 @@ bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         const model::Joint& own = mechanics_.system().joints[joint];
         Nodes torque;
-        if (mechanics_.is_native(joint) && mode.leans[joint] == 0) {
+        if (mechanics_.is_native(joint) && mode.leans[joint] == 0 && !mechanics_.spring_slides(joint)) {
             mechanics_.native_torques(joint, mode, s.y, s.belts[joint], first, end, torque);
         } else {
             each_node([&](std::size_t j, const Moment& at) {

@@ -548,9 +548,9 @@ Mechanics::Asked Mechanics::asked_law(std::size_t joint) const {
             held ? held->piece() : nullptr};
 }
 
-double Mechanics::spring_torque(std::size_t joint, double angle) const {
+double Mechanics::spring_torque(std::size_t joint, const Moment& at) const {
     const auto& held = contacts_[joint].spring;
-    return held ? held->value({}, angle) : system_.joints[joint].spring.torque(angle);
+    return held ? held->value(at) : system_.joints[joint].spring.torque(angle(joint, at.y));
 }
 
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
@@ -559,7 +559,7 @@ double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& 
     double torque = -friction(joint, at, mode, belt);
     if (own.damping != 0) torque += own.damping * s;
     if (own.stiffness != 0) torque += own.stiffness * q;
-    if (!own.spring.none()) torque += spring_torque(joint, q);
+    if (!own.spring.none()) torque += spring_torque(joint, at);
     if (mode.presses[joint] != 0) torque += own.stops->torque(mode.presses[joint], q, s);
     return torque;
 }
@@ -580,7 +580,10 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
         return;
     }
     if (!own.spring.none()) {
-        for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
+        const auto& held = contacts_[joint].spring;
+        for (std::size_t j = first; j < end; ++j) {
+            out[j] += held ? held->value({}, angle[j]) : own.spring.torque(angle[j]);
+        }
     }
     if (const int side = mode.presses[joint]; side != 0) {
         for (std::size_t j = first; j < end; ++j) out[j] += own.stops->torque(side, angle[j], velocity[j]);
@@ -651,7 +654,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y);
     double size = std::fabs(own.stiffness * q);
-    if (!own.spring.none()) size += std::fabs(spring_torque(joint, q));
+    if (!own.spring.none()) size += std::fabs(spring_torque(joint, at));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
@@ -661,8 +664,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
         for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
         size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
         const auto by_steepness = [&](double part) {
-            return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
-                   (2 * part);
+            return std::fabs(own.spring.torque(q + part * known) - own.spring.torque(q - part * known)) / (2 * part);
         };
         // A jump does not count as steepness: over a wider interval it is far less steep.
         constexpr double ulps = 1024 * rounding, wider = 1e-4;
@@ -696,7 +698,7 @@ std::optional<std::size_t> Mechanics::joint_of(const Piecewise& function, double
         for (Signal* s : {&loads_[j], &c.sliding[0], &c.sliding[1], &c.holding[0], &c.holding[1], &c.normal}) {
             s->for_each_piecewise(t, [&](const Piecewise& each) { found = found || &each == &function; });
         }
-        if (found) return j;
+        if (found || (c.spring && &*c.spring == &function)) return j;
     }
     return {};
 }

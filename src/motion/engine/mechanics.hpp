@@ -159,6 +159,11 @@ public:
     [[nodiscard]] bool nonlinear() const { return nonlinear_; }
     /// Returns whether its friction law is native and has constant parameters.
     [[nodiscard]] bool is_native(std::size_t joint) const { return contacts_[joint].native; }
+    /// Returns whether the spring is a user's function with known conditions, which may jump.
+    [[nodiscard]] bool spring_may_jump(std::size_t joint) const { return contacts_[joint].spring.has_value(); }
+    [[nodiscard]] bool spring_slides(std::size_t joint) const {
+        return contacts_[joint].spring && contacts_[joint].spring->slides();
+    }
     /// Returns whether all joint torques are linear in angle and velocity, except for friction that depends on the
     /// direction only, and nothing else depends on the motion.
     [[nodiscard]] bool all_linear() const { return all_linear_; }
@@ -368,7 +373,7 @@ private:
     };
 
     [[nodiscard]] double bound_of_fastest(const Frame& frame) const;
-    [[nodiscard]] double spring_torque(std::size_t joint, double angle) const;
+    [[nodiscard]] double spring_torque(std::size_t joint, const Moment& at) const;
     [[nodiscard]] double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Visits each user function.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;

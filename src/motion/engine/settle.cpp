@@ -20,14 +20,10 @@ constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 
 /// Handles a surface that was crossed back and forth. The body rests if the remaining crossings take a negligible time.
 Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
-    std::size_t joint = mechanics_.joints();
-    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
-        mechanics_.loads()[j].for_each_piecewise(now_.t.hi, [&](Piecewise& each) {
-            if (&each == back.function) joint = j;
-        });
-    }
-    if (joint == mechanics_.joints() || !now_.rubs(joint) || mechanics_.has_belt(joint) || now_.mode.leans[joint] != 0)
-        return Settles::no;
+    const auto loaded = mechanics_.joint_of(*back.function, now_.t.hi);
+    if (!loaded) return Settles::no;
+    const std::size_t joint = *loaded;
+    if (!now_.rubs(joint) || mechanics_.has_belt(joint) || now_.mode.leans[joint] != 0) return Settles::no;
     const double speed = now_.slip(mechanics_, joint);
     if (speed == 0) return Settles::no;
     Now still = now_;

@@ -5,17 +5,20 @@
 namespace dinal::motion::engine {
 
 bool Piecewise::slide(const Moment& own, const Moment& beyond, std::uint64_t arguments) {
-    if (law_ || function_->read() == nullptr) return false;
+    if (is_friction() || function_->read() == nullptr) return false;
     auto made = std::make_shared<Slide>();
     let_go();
-    constexpr std::uint64_t all = ~std::uint64_t{0};
-    function_->decide(piece_, time(own), asking_->state(own.y), asking_->states(own.y), all);
-    function_->decide(made->beyond, time(beyond), asking_->state(beyond.y), asking_->states(beyond.y), all);
-    // Conditions after the first that differs may depend on it.
+    const auto decide_at = [&](const Moment& at, model::terms::Piece& piece) {
+        constexpr std::uint64_t all = ~std::uint64_t{0};
+        called(at, law_ ? law_->slip(at) : 0, [&](double t, const model::State& state, std::span<const double> states) {
+            function_->decide(piece, t, state, states, all);
+        });
+    };
+    decide_at(own, piece_), decide_at(beyond, made->beyond);
     const auto& conditions = piece_.conditions;
     while (made->condition < conditions.size()) {
         const auto& [step, further, of] = conditions[made->condition];
-        if (made->beyond.decisions[step] != piece_.decisions[step] && (of & ~arguments) == 0) break;
+        if (made->beyond.decisions[step] != piece_.decisions[step] && (law_ || (of & ~arguments) == 0)) break;
         ++made->condition;
     }
     if (made->condition == conditions.size() || made->beyond.conditions.empty()) return false;
@@ -68,6 +71,11 @@ void Piecewise::sliding_margins(const Moment& at, std::vector<double>& out) cons
 }
 
 double Piecewise::margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const {
+    // The angle is the only argument of a spring, and stands in the place of the time.
+    if (law_) {
+        const double turns = law_->slip({at.t, at.side, rates});
+        return turns * of.margin_rate(piece_, slide_->condition, law_->slip(at), {}, {}, {}, {});
+    }
     const std::size_t count = of.state_count();
     return of.margin_rate(piece_, slide_->condition, time(at), asking_->state(at.y), asking_->states(at.y).first(count),
                           asking_->state(rates), asking_->states(rates).first(count));

@@ -92,7 +92,7 @@ public:
     };
 
     [[nodiscard]] bool has_pieces() const { return has_pieces_; }
-    [[nodiscard]] bool is_law() const { return law_.has_value(); }
+    [[nodiscard]] bool is_friction() const { return law_ && !law_->of_angle; }
     [[nodiscard]] bool is_spring() const { return law_ && law_->of_angle; }
     [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
     /// The next time at which the formula changes.
@@ -100,16 +100,17 @@ public:
         return law_ && law_->alone ? model::never : function_->next_break(t);
     }
     [[nodiscard]] double value(const Moment& at) const {
-        if (law_) return value(at, law_->way * law_->slip(at));
         if (slide_) return sliding(at);
+        if (law_) return value(at, law_->way * law_->slip(at));
         if (piece_.conditions.empty() || at.freely) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
     [[nodiscard]] double value(const Moment& at, double speed) const {
         return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
-            return is_held() && (speed != 0 || law_->of_angle) ? function_->value_on(piece_, t, state, states, nullptr)
-                                                               : function_->value_with(t, state, states);
+            const bool on_piece = is_held() && (law_->of_angle ? !at.freely : speed != 0);
+            return on_piece ? function_->value_on(piece_, t, state, states, nullptr)
+                            : function_->value_with(t, state, states);
         });
     }
     /// Decides the conditions at this moment; existing decisions stay, except those that depend on a variable in
@@ -171,7 +172,10 @@ public:
 
 private:
     [[nodiscard]] double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
-        return function_->value_on(piece, time(at), asking_->state(at.y), asking_->states(at.y), margins);
+        return called(at, law_ ? law_->way * law_->slip(at) : 0,
+                      [&](double t, const model::State& state, std::span<const double> states) {
+                          return function_->value_on(piece, t, state, states, margins);
+                      });
     }
     [[nodiscard]] double margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const;
     [[nodiscard]] double sliding(const Moment& at) const;

@@ -270,7 +270,7 @@ std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const s
     if (!slides(*of.function)) return {};
     of.along.clear();
     mechanics_.for_each_piecewise(here.t, [&](Piecewise& each) {
-        if (each.is_law() || &each == of.function || slide_of(each) != sliding_.end()) return;
+        if (each.is_friction() || &each == of.function || slide_of(each) != sliding_.end()) return;
         const Piecewise before = each;
         if (slides(each) && is_same_surface(*of.function, each, here)) {
             of.along.push_back(&each);
