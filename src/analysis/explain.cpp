@@ -10,7 +10,7 @@
 #include "analysis/phase_lag.hpp"
 #include "analysis/prose.hpp"
 #include "analysis/recurrence.hpp"
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/sticking.hpp"

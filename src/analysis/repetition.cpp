@@ -10,7 +10,7 @@
 
 #include "analysis/returns.hpp"
 #include "model/controller.hpp"
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal::analysis {
 namespace {

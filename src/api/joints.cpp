@@ -20,8 +20,6 @@
 #include "model/controller.hpp"
 #include "model/joint_options.hpp"
 #include "model/laws/coulomb.hpp"
-#include "model/laws/freewheel.hpp"
-#include "model/laws/sum.hpp"
 #include "source/describe.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"

@@ -48,9 +48,9 @@ double constant_from(const Component& c) {
 
 terms::Detail detail_of(const Component& c) {
     if (c.gain == 0) {
-        return terms::no_detail;
+        return {};
     }
-    const terms::Detail whole = std::visit([](const auto& term) { return term.detail(); }, c.term);
+    const terms::Detail whole = std::visit([](const auto& term) { return terms::detail_of(term); }, c.term);
     return {std::max(c.from, whole.from), std::min(c.to, whole.to), whole.apart};
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace dinal::model {
 namespace {
@@ -142,7 +143,7 @@ double Excitation::view(double t, double spacing) const {
 }
 
 terms::Detail Excitation::finest_detail(double from, double to) const {
-    terms::Detail finest = terms::no_detail;
+    terms::Detail finest;
     for (const Component& c : components()) {
         const terms::Detail found = detail_of(c);
         if (found.apart < finest.apart && found.from < found.to && found.from < to && found.to > from) {
@@ -203,7 +204,7 @@ Excitation Excitation::scaled(double gain) const {
 
 Excitation Excitation::delayed(double delay) const {
     return changed([delay](Component& c) {
-        std::visit([delay](auto& term) { term.delay_by(delay); }, c.term);
+        std::visit([delay](auto& term) { terms::delay(term, delay); }, c.term);
         c.from += delay;
         c.to += delay;
     });
@@ -228,6 +229,35 @@ Excitation Excitation::with_functions(const FunctionChange& other) const {
 
 Excitation operator+(const Excitation& a, const Excitation& b) {
     return Excitation(Components::joined(a.components_, b.components_));
+}
+
+namespace {
+
+/// Returns whether `common` is an integer multiple of all periods.
+bool fit(const std::vector<double>& periods, double common) {
+    return std::all_of(periods.begin(), periods.end(), [common](double period) {
+        const double n = common / period;
+        return std::fabs(n - std::round(n)) <= 1e-9 * n;
+    });
+}
+
+}  // namespace
+
+double period_from(const Excitation& excitation, double t) {
+    std::vector<double> periods;
+    for (const Component& c : excitation.components()) {
+        if (constant_from(c) <= t) continue;
+        const double period = std::visit([](const auto& term) { return terms::period_of(term); }, c.term);
+        if (!(period > 0) || c.from > t || c.to < never) return 0;
+        periods.push_back(period);
+    }
+    if (periods.empty()) return 0;
+    constexpr int most_beats = 60;  // periods of the slowest term; a longer common period is of no use
+    const double longest = *std::max_element(periods.begin(), periods.end());
+    for (int n = 1; n <= most_beats; ++n) {
+        if (fit(periods, n * longest)) return n * longest;
+    }
+    return 0;
 }
 
 }  // namespace dinal::model

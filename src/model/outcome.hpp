@@ -1,6 +1,7 @@
-// The outcomes of a run. One list holds them and their sentences, so that neither can be forgotten.
+// The outcomes of a run, in one list with their sentences, so that neither can be forgotten.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 namespace dinal::model {
@@ -38,5 +39,18 @@ constexpr std::string_view sentence(Outcome outcome) {
     }
     return "";
 }
+
+/// A user's function that returned two values for the same arguments: it has a memory or uses random numbers.
+struct Contradiction {
+    std::string who;       ///< the function's name for the user: "M"
+    const char* argument;  ///< the name of the argument `at`: "t"
+    double at = 0;
+    double first = 0, again = 0;  ///< the value returned first, and later for the same argument
+};
+
+/// "M depends on more than its arguments: at t = 3.25 it returned 0.5 and, evaluated again, 0.7"
+std::string sentence(const Contradiction& found);
+/// sentence(found), followed by the remedy.
+std::string sentence_with_cure(const Contradiction& found);
 
 }  // namespace dinal::model

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "model/contradiction.hpp"
 #include "model/event.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"

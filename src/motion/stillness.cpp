@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "model/sticking.hpp"
 
 namespace dinal::motion {

@@ -16,9 +16,9 @@
 #include <string>
 #include <vector>
 
-#include "model/contradiction.hpp"
 #include "model/drive.hpp"
 #include "model/oscillator.hpp"
+#include "model/outcome.hpp"
 #include "model/system.hpp"
 
 namespace dinal::motion {

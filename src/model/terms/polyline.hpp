@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -79,7 +80,6 @@ struct Polyline {
     }
     [[nodiscard]] double most() const { return most_; }
     [[nodiscard]] double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
-    [[nodiscard]] Detail detail() const { return no_detail; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Samples& s = *samples;
@@ -158,5 +158,13 @@ inline constexpr TermText Polyline::about{
     "print(M(0.5), M(4.5))  --> 0.6875\t0.6875\n"
     "M = excitation.samples{ t = { 0, 1, 2 }, M = { 5, 7, 6 }, interpolation = \"hold\" }\n"
     "print(M(0.9), M(1), M(9))  --> 5.0\t7.0\t6.0"};
+
+/// The cubic spline through points is given by its slopes there; its first two derivatives are continuous. These are
+/// the slopes at increasing times. The third derivative is continuous at the second point and the last but one, too
+/// (not-a-knot, C. de Boor); three points give a parabola, two a straight line.
+std::vector<double> spline_slopes(std::span<const double> t, std::span<const double> values);
+
+/// The slopes of a periodic spline. The period must exceed the span of the times.
+std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<const double> values, double period);
 
 }  // namespace dinal::model::terms

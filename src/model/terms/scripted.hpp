@@ -140,7 +140,6 @@ struct Scripted {
     [[nodiscard]] double constant_from() const { return never; }
     [[nodiscard]] double most() const { return never; }
     [[nodiscard]] double repeats_after() const { return period; }
-    [[nodiscard]] Detail detail() const { return no_detail; }
     void delay_by(double d) { delay += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const;
     /// Removes a break listed twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.
