@@ -11,7 +11,7 @@
 
 #include "analysis/map.hpp"
 #include "analysis/steady.hpp"
-#include "motion/engine/left.hpp"
+#include "motion/engine/history.hpp"
 
 namespace dinal::analysis {
 

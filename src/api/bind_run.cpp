@@ -41,7 +41,7 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
-#include "motion/engine/left.hpp"
+#include "motion/engine/history.hpp"
 #include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"

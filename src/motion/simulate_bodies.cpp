@@ -11,7 +11,6 @@
 #include "motion/engine/modes.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/engine/run.hpp"
-#include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 

@@ -2,7 +2,7 @@
 // Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 #pragma once
 
-#include "motion/engine/plain.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/method.hpp"
 
 namespace dinal::motion::dopri5 {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/engine/left.hpp"
+#include "motion/engine/history.hpp"
 #include "motion/run.hpp"
 #include "motion/simulate.hpp"
 

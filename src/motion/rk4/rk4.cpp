@@ -6,7 +6,7 @@
 
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"
-#include "motion/engine/plain.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
 namespace dinal::motion::rk4 {
