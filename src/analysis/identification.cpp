@@ -12,7 +12,6 @@
 
 #include "algebra/decompositions.hpp"
 #include "analysis/fit_starts.hpp"
-#include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
 #include "analysis/missing_torques.hpp"
@@ -180,9 +179,10 @@ private:
             std::optional<double> rests_at = rests_at_;
             if (rests_at) *rests_at -= turns_before(p);
             if (rests_at && *rests_at < 0) return {};
-            Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at);
-            decay.array() += at(p, Unknown::offset);
-            return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
+            Eigen::VectorXd theta(static_cast<Eigen::Index>(rows));
+            theory::free_decay(*system, initial, std::span(question_.t).first(rows), rests_at, {theta.data(), rows});
+            theta.array() += at(p, Unknown::offset);
+            return theta.allFinite() ? std::optional(std::move(theta)) : std::nullopt;
         }
         const auto run = driven(*system, *question_.M, initial, rows);
         if (!run) return {};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "model/oscillator.hpp"
 #include "theory/theory_modes.hpp"
@@ -68,6 +69,12 @@ private:
     Extreme first_{};    // its t is infinite if there is none
     double until_rest_;  // half cycles from the first extreme to rest
 };
+
+/// Stores theta at these increasing times, starting from `initial` at the first one: a thousand samples cost a few
+/// hundred sines. Requires a linear spring, Coulomb friction and less than critical damping. With `rests_at` the mass
+/// rests at that extreme (0: the first) regardless of the friction limit.
+void free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
+                std::optional<double> rests_at, std::span<double> theta);
 
 /// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2) from viscous damping alone; zeta < 1.
 double logarithmic_decrement(double zeta);
