@@ -1,4 +1,4 @@
-// The texts of help(): entries, searches, the list of everything.
+// The function help() and its texts: entries, searches, the list of everything.
 #pragma once
 
 #include <string>
@@ -37,5 +37,8 @@ std::vector<std::string> help_option_names();
 
 /// Related entries: at most five names that help_about() knows.
 std::vector<std::string> see_also(const Section& section, const lua::Member& member);
+
+extern const lua::Class help_functions;  // help
+void register_help(lua_State* L);
 
 }  // namespace dinal::help

@@ -3,7 +3,7 @@
 
 #include "api/classes.hpp"
 #include "errors/error_remarks.hpp"
-#include "help/help.hpp"
+#include "help/help_text.hpp"
 #include "lab/lab_course.hpp"
 #include "lab/report.hpp"
 #include "lua/interrupt.hpp"

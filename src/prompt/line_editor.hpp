@@ -1,12 +1,45 @@
 // Lines typed by the user: with GNU readline at a terminal if available, otherwise plain.
 #pragma once
 
+#include <csignal>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "lua/lua_headers.hpp"
-#include "prompt/plain_lines.hpp"
 
 namespace dinal::prompt {
+
+enum class Reading {
+    line,
+    end,          ///< Ctrl-D, or the end of a file
+    interrupted,  ///< Ctrl-C
+};
+
+struct TypedLine {
+    Reading reading = Reading::end;
+    std::string text;  ///< without its newline; a pasted block has newlines inside
+};
+
+/// The text after a copied prompt of this or another program: "> x", ">> x", "dinal> x", "In [1]: x". None without a
+/// prompt.
+std::optional<std::string_view> behind_prompt(std::string_view line);
+
+TypedLine read_plain(const std::string& prompt);
+
+/// While this object lives, Ctrl-C only affects the line being typed. Only one may exist.
+class InterruptNote {
+public:
+    InterruptNote();
+    ~InterruptNote();
+    InterruptNote(const InterruptNote&) = delete;
+    InterruptNote& operator=(const InterruptNote&) = delete;
+
+    [[nodiscard]] static bool interrupted();
+
+private:
+    struct sigaction before_ {};
+};
 
 /// Only one may exist. Lua code may read standard input between two lines.
 class LineEditor {

@@ -1,4 +1,5 @@
-#include "prompt/plain_lines.hpp"
+// Lines read without an editor, and the handling of Ctrl-C meanwhile.
+#include "prompt/line_editor.hpp"
 
 #include <poll.h>
 #include <unistd.h>

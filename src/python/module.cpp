@@ -20,7 +20,7 @@
 #include "help/signature.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
-#include "python/values.hpp"
+#include "python/state.hpp"
 #include "source/function_source.hpp"
 #include "source/value_text.hpp"
 #include "sweep/sweep_run.hpp"

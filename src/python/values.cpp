@@ -1,4 +1,4 @@
-#include "python/values.hpp"
+#include "python/state.hpp"
 
 #include <pybind11/numpy.h>
 
