@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analysis/phase_lag.hpp"
-#include "analysis/prose.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
 #include "model/laws/coulomb.hpp"
@@ -16,6 +15,7 @@
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/part.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -48,7 +48,7 @@ double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool un
 }
 
 /// Builds the text on one body or link, in sentences and paragraphs.
-class Story : protected Prose {
+class Story : protected text::Prose {
 public:
     /// The arguments must outlive the story. `seen` is the joint as a one-body system.
     Story(const RunToTell& whole, std::size_t joint, const model::Oscillator& seen)
@@ -704,7 +704,7 @@ private:
 };
 
 /// Builds the text on the whole system around those on its bodies and links.
-class WholeStory : protected Prose {
+class WholeStory : protected text::Prose {
 public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 

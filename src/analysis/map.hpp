@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "model/event.hpp"
-#include "model/outcome.hpp"
 #include "motion/engine/run.hpp"
 
 namespace dinal::analysis {

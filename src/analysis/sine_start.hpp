@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "analysis/steady.hpp"
-#include "theory/theory_modes.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::analysis {
 

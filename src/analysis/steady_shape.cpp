@@ -5,7 +5,6 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/prose.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/short_slides.hpp"
 #include "analysis/steady.hpp"
@@ -13,6 +12,7 @@
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -195,7 +195,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 
 namespace {
 
-class SteadyStory : Prose {
+class SteadyStory : text::Prose {
 public:
     /// The names of several bodies; empty for one.
     SteadyStory(const SteadyMotion& motion, bool timeless, const std::vector<std::string>& names)

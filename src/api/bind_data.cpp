@@ -29,7 +29,7 @@
 #include "plots/shades.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

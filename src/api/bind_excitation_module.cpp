@@ -18,8 +18,8 @@
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "text/characters.hpp"
-#include "text/fixed_text.hpp"
 #include "text/option.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 

@@ -10,7 +10,6 @@
 #include "lua/values.hpp"
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
-#include "model/laws/jenkins.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
 #include "model/laws/user_law.hpp"

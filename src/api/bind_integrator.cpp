@@ -11,7 +11,7 @@
 #include "lua/values.hpp"
 #include "motion/integrators.hpp"
 #include "source/describe.hpp"
-#include "text/fixed_text.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 

@@ -45,7 +45,6 @@
 #include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
-#include "text/fixed_text.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
 #include "text/suggest.hpp"

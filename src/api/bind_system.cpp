@@ -18,8 +18,8 @@
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
-#include "model/laws/jenkins.hpp"
 #include "motion/engine/modes.hpp"
 #include "source/describe.hpp"
 

@@ -10,7 +10,7 @@
 #include "lua/memory_limit.hpp"
 #include "motion/columns.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {

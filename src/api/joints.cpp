@@ -18,7 +18,7 @@
 #include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
-#include "model/joint_options.hpp"
+#include "model/functions.hpp"
 #include "model/laws/coulomb.hpp"
 #include "source/describe.hpp"
 #include "text/characters.hpp"

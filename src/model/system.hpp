@@ -21,7 +21,7 @@
 #include "model/drive.hpp"
 #include "model/excitation.hpp"
 #include "model/friction.hpp"
-#include "model/laws/jenkins.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/oscillator.hpp"
 #include "model/spring.hpp"
 #include "model/units.hpp"

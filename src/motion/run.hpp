@@ -11,7 +11,6 @@
 #include "model/event.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
-#include "model/outcome.hpp"
 #include "motion/columns.hpp"
 #include "motion/course.hpp"
 #include "motion/growing.hpp"

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "model/drive.hpp"
+#include "model/event.hpp"
 #include "model/oscillator.hpp"
-#include "model/outcome.hpp"
 #include "model/system.hpp"
 
 namespace dinal::motion {

@@ -18,7 +18,7 @@
 #include "plots/svg_words.hpp"
 #include "plots/thinning.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::plots {
 

@@ -20,7 +20,6 @@
 #include "lua/vector.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
-#include "sweep/sweep_options.hpp"
 #include "sweep/sweep_run.hpp"
 #include "text/option.hpp"
 

@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "theory/theory_modes.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::theory {
 

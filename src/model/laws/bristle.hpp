@@ -2,6 +2,7 @@
 // Astrom and Lischinsky (1995), and Dahl's (1968), its case without damping and with Re = Rd.
 #pragma once
 
+#include <fmt/format.h>
 #include <cmath>
 
 #include "model/friction.hpp"
@@ -62,5 +63,27 @@ inline std::string Bristle::lua_text() const {
     return dahl ? text::lua_text("friction.dahl", dahl_options, *this, text::Defaults::left_out)
                 : text::lua_text("friction.lugre", lugre_options, *this, text::Defaults::left_out);
 }
+
+// The Jenkins element: a spring in series with a dry slider. Several in parallel form Iwan's hysteresis.
+
+/// torque = stiffness z, |torque| <= Rd; z' is the slip while the slider sticks, and 0 while it slides.
+struct Jenkins {
+    double stiffness = 0, kinetic = 0;
+
+    static constexpr bool depends_on_speed = false;
+    [[nodiscard]] double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
+    [[nodiscard]] double holding(Motion /*way*/) const { return kinetic; }
+    [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, kinetic); }
+    [[nodiscard]] std::string lua_text() const {
+        return fmt::format("friction.jenkins{{ stiffness = {}, Rd = {} }}", stiffness, kinetic);
+    }
+};
+
+inline constexpr text::Option jenkins_options[] = {
+    {"stiffness", "torque per rad", text::needed, text::positive, "of its spring", text::fills<&Jenkins::stiffness>},
+    {"Rd", "torque", text::needed, text::positive, "dry friction of its slider", text::fills<&Jenkins::kinetic>},
+};
+inline constexpr text::Call jenkins_call{"friction.jenkins", "friction.jenkins{ stiffness = 100, Rd = 1 }",
+                                         jenkins_options};
 
 }  // namespace dinal::model::laws

@@ -10,7 +10,7 @@
 #include "motion/engine/chatter.hpp"
 #include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
-#include "motion/engine/ranges.hpp"
+#include "motion/engine/signal.hpp"
 #include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"
 

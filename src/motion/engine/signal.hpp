@@ -17,13 +17,26 @@
 #include <utility>
 #include <vector>
 
+#include "model/bounds.hpp"
 #include "model/controller.hpp"
 #include "model/formula.hpp"
 #include "model/system.hpp"
 #include "motion/engine/nodes.hpp"
-#include "motion/engine/ranges.hpp"
 
 namespace dinal::motion::engine {
+
+/// Bounds of a motion over some steps, and of formulas on it.
+struct Ranges {
+    model::bounds::Interval t;
+    std::vector<model::bounds::Interval> y{};  ///< ranges of all entries of y
+
+    /// The range of the formula, on its piece if given, or of the quantity that decides `condition`; empty if unknown.
+    /// `named`: the formula receives all of y as states.
+    [[nodiscard]] std::optional<model::bounds::Interval> of(const model::Formula* formula,
+                                                            const model::terms::Piece* piece, bool named,
+                                                            double delay = 0,
+                                                            std::optional<std::size_t> condition = {}) const;
+};
 
 /// One moment of a run; y has all angles, all velocities, and then the user's states.
 struct Moment {

@@ -8,7 +8,7 @@
 #include "motion/engine/balance.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/ending.hpp"
-#include "motion/engine/ranges.hpp"
+#include "motion/engine/signal.hpp"
 
 namespace dinal::motion::engine {
 

@@ -10,7 +10,7 @@
 
 #include "plots/neighbours.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::plots::animation {
 
