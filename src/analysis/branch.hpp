@@ -14,6 +14,7 @@
 
 #include "analysis/steady.hpp"
 #include "analysis/steady_facts.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::analysis {
 
@@ -23,7 +24,7 @@ using Family = std::function<SteadyQuestion(double parameter)>;
 struct HeldMode;
 
 /// The map whose fixed points are the motions of a branch, at any parameter value.
-class Circuit {
+class Circuit : text::NotCopied {
 public:
     struct Lap {
         Eigen::VectorXd to;
@@ -34,9 +35,6 @@ public:
         std::shared_ptr<const HeldMode> mode = {};  ///< discrete state at the end, if known
     };
 
-    Circuit() = default;
-    Circuit(const Circuit&) = delete;
-    Circuit& operator=(const Circuit&) = delete;
     virtual ~Circuit() = default;
 
     virtual Lap lap(const Eigen::VectorXd& x, double p) = 0;

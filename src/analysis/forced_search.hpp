@@ -7,6 +7,7 @@
 
 #include "analysis/map.hpp"
 #include "analysis/steady.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::analysis {
 
@@ -59,10 +60,8 @@ private:
     std::optional<model::Outcome> failed_;
 };
 
-class ForcedSearch {
+class ForcedSearch : text::NotCopied {
 public:
-    ForcedSearch(const ForcedSearch&) = delete;
-    ForcedSearch& operator=(const ForcedSearch&) = delete;
     virtual ~ForcedSearch() = default;
 
 protected:

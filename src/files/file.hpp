@@ -14,15 +14,14 @@
 #include <vector>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::files {
 
 /// A file descriptor that closes itself.
-class Descriptor {
+class Descriptor : text::NotCopied {
 public:
     explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
     ~Descriptor() { close(); }
     void close();
     [[nodiscard]] int number() const { return number_; }
@@ -50,8 +49,6 @@ public:
 
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
     /// Stores a failure for commit(), so that writers need not check every call.

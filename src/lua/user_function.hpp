@@ -10,19 +10,18 @@
 #include "lua/bind.hpp"
 #include "lua/formula_reader.hpp"
 #include "model/drive.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::lua {
 
 /// While this object lives, user functions run on `L`, the state of the present call, often a coroutine. Create one in
 /// every binding that may evaluate an excitation (simulate, e:value, run:at). They nest.
-class CallState {
+class CallState : text::NotCopied {
 public:
     /// Raises an error if calls nest too deep, because each may be an integration on the C++ stack, which is smaller
     /// than Lua assumes.
     explicit CallState(lua_State* L);
     ~CallState();
-    CallState(const CallState&) = delete;
-    CallState& operator=(const CallState&) = delete;
 
     /// Returns whether a user function has failed during this call. From then on all functions return NaN, until
     /// may_go_on().

@@ -11,6 +11,7 @@
 
 #include "model/controller.hpp"
 #include "model/excitation.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -22,11 +23,8 @@ struct OwnState {
 };
 
 /// A user's action at one of his events.
-class EventAction {
+class EventAction : text::NotCopied {
 public:
-    EventAction() = default;
-    EventAction(const EventAction&) = delete;
-    EventAction& operator=(const EventAction&) = delete;
     virtual ~EventAction() = default;
     /// Changes the motion and the states; returns false if it failed (the owner knows why).
     virtual bool act(double t, State& state, std::span<double> states) = 0;

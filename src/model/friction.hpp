@@ -15,6 +15,7 @@
 #include <typeinfo>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -146,10 +147,7 @@ public:
     }
 
 private:
-    struct Any {
-        Any() = default;
-        Any(const Any&) = delete;
-        Any& operator=(const Any&) = delete;
+    struct Any : text::NotCopied {
         virtual ~Any() = default;
         [[nodiscard]] virtual double sliding(Motion way, double speed) const = 0;
         [[nodiscard]] virtual double holding(Motion way) const = 0;

@@ -11,6 +11,7 @@
 #include <typeinfo>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -57,10 +58,7 @@ public:
     }
 
 private:
-    struct AnySpring {
-        AnySpring() = default;
-        AnySpring(const AnySpring&) = delete;
-        AnySpring& operator=(const AnySpring&) = delete;
+    struct AnySpring : text::NotCopied {
         virtual ~AnySpring() = default;
         [[nodiscard]] virtual double torque(double theta) const = 0;
         [[nodiscard]] virtual double energy(double theta) const = 0;

@@ -10,6 +10,7 @@
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion {
 
@@ -41,11 +42,9 @@ protected:
     ~Leg() = default;
 };
 
-class Course {
+class Course : text::NotCopied {
 public:
     explicit Course(const model::Oscillator& system) : system_(system) {}
-    Course(const Course&) = delete;
-    Course& operator=(const Course&) = delete;
     virtual ~Course() = default;
 
     [[nodiscard]] const model::Oscillator& system() const { return system_; }

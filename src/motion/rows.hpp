@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "motion/simulate.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion {
 
-class RowWriter {
+class RowWriter : text::NotCopied {
 public:
     /// Requires a grid from Grid::within; reserves all its rows.
     RowWriter(const model::Oscillator& system, const Grid& grid, Run& run)
@@ -22,8 +23,6 @@ public:
         run.rows = Rows(std::move(table));
         set_next();
     }
-    RowWriter(const RowWriter&) = delete;
-    RowWriter& operator=(const RowWriter&) = delete;
 
     /// The time of the next row; `never` after the last one.
     [[nodiscard]] double next_time() const { return next_time_; }

@@ -12,6 +12,7 @@
 #include "help/signature.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/tokens.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::prompt {
 
@@ -43,11 +44,9 @@ struct OpenCall {
 };
 
 /// The text before the cursor, to which it refers.
-class TypedText {
+class TypedText : text::NotCopied {
 public:
     explicit TypedText(std::string_view before);
-    TypedText(const TypedText&) = delete;
-    TypedText& operator=(const TypedText&) = delete;
 
     [[nodiscard]] Cursor cursor() const { return cursor_; }
     /// The beginning of a name or string at the cursor.

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "lua/lua_headers.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::prompt {
 
@@ -28,12 +29,10 @@ std::optional<std::string_view> behind_prompt(std::string_view line);
 TypedLine read_plain(const std::string& prompt);
 
 /// While this object lives, Ctrl-C only affects the line being typed. Only one may exist.
-class InterruptNote {
+class InterruptNote : text::NotCopied {
 public:
     InterruptNote();
     ~InterruptNote();
-    InterruptNote(const InterruptNote&) = delete;
-    InterruptNote& operator=(const InterruptNote&) = delete;
 
     [[nodiscard]] static bool interrupted();
 

@@ -8,6 +8,7 @@
 
 #include "model/oscillator.hpp"
 #include "model/terms/term.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 class Formula;
@@ -16,11 +17,8 @@ class Formula;
 namespace dinal::model::terms {
 
 /// A function's memory between its calls in one run.
-class Memory {
+class Memory : text::NotCopied {
 public:
-    Memory() = default;
-    Memory(const Memory&) = delete;
-    Memory& operator=(const Memory&) = delete;
     virtual ~Memory() = default;
     /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
     [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
@@ -42,11 +40,8 @@ struct Piece {
 };
 
 /// A user's function of t or of t, theta, velocity. Virtual because the core must not depend on its language.
-class UserFunction {
+class UserFunction : text::NotCopied {
 public:
-    UserFunction() = default;
-    UserFunction(const UserFunction&) = delete;
-    UserFunction& operator=(const UserFunction&) = delete;
     virtual ~UserFunction() = default;
     /// Returns NaN if the function failed (its owner knows why): the run ends there.
     virtual double value(double t, const State& state) = 0;

@@ -15,15 +15,13 @@
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::engine {
 
 /// A stretch of one body that is recomputed when it is evaluated.
-class Remade {
+class Remade : text::NotCopied {
 public:
-    Remade() = default;
-    Remade(const Remade&) = delete;
-    Remade& operator=(const Remade&) = delete;
     virtual ~Remade() = default;
     /// Angle and velocity at the time since the start.
     [[nodiscard]] virtual std::vector<double> at(double since_start) const = 0;

@@ -12,6 +12,7 @@
 #include "motion/belt_slope.hpp"
 #include "motion/engine/signal.hpp"
 #include "motion/simulate.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::engine {
 
@@ -115,11 +116,9 @@ std::vector<std::size_t> redundant_rigid(const model::System& system);
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high);
 
-class Mechanics {
+class Mechanics : text::NotCopied {
 public:
     Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);
-    Mechanics(const Mechanics&) = delete;
-    Mechanics& operator=(const Mechanics&) = delete;
     ~Mechanics() = default;
 
     [[nodiscard]] const model::System& system() const { return system_; }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "motion/exact/free_motion.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::exact {
 
@@ -56,11 +57,9 @@ struct Resonance {
     }
 };
 
-class WalkedCurve {
+class WalkedCurve : text::NotCopied {
 public:
     explicit WalkedCurve(const LinearMotion& free);
-    WalkedCurve(const WalkedCurve&) = delete;
-    WalkedCurve& operator=(const WalkedCurve&) = delete;
 
     struct Value {
         double f = 0, slope = 0;
