@@ -104,19 +104,19 @@ public:
     }
 
 private:
-    [[nodiscard]] bool named() const { return whole_.system.named; }
-    [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
+    bool named() const { return whole_.system.named; }
+    std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
     /// Returns whether nothing rubs on the joint.
-    [[nodiscard]] bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
+    bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
     /// Returns whether all torques on a standing mass and its friction limit are known.
-    [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
-    [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
+    bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
+    std::string at(double t) const { return text::time_text(t, T0_); }
     /// The angle at the end of a stretch.
     [[nodiscard]] static std::string place(const Stretch& s) {
         return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
     /// Returns whether a torque on a mass at rest equals the limit, within the accuracy of M, k theta and the time.
-    [[nodiscard]] bool at_limit(double torque, const model::Event& event) const {
+    bool at_limit(double torque, const model::Event& event) const {
         const double Re = limit(torque);
         const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta) +
                              std::fabs(system_.spring().torque(event.theta));
@@ -125,12 +125,12 @@ private:
     }
 
     /// M - k theta minus the torque of other springs, plus the effect of support and belt on a mass at rest.
-    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
-    [[nodiscard]] double pull_at(double theta, double M, double t) const {
+    double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
+    double pull_at(double theta, double M, double t) const {
         return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
     /// The torque of a moving support and belt on a mass at rest, -I a - I vb' - C vb; limits from the right.
-    [[nodiscard]] double around(double t) const {
+    double around(double t) const {
         double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;
         const double rate = motion::belt_slope(belt_, t, motion::belt_stretch * T0_).rate;
@@ -139,14 +139,14 @@ private:
     }
 
     /// Re against a pull in this direction.
-    [[nodiscard]] double limit(double pull) const {
+    double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
     }
     /// "|M - k theta| = 0.155 <= Re = 0.167"
-    [[nodiscard]] std::string reason(double pull) const {
+    std::string reason(double pull) const {
         return fmt::format("|{}| = {}", pull_name(), text::against_limit(std::fabs(pull), limit(pull)));
     }
-    [[nodiscard]] std::string pull_name() const {
+    std::string pull_name() const {
         std::string name = "M";
         if (on_base_) name += " - I a";
         if (on_belt_ && !steady_belt_) name += " - I vb'";
@@ -155,7 +155,7 @@ private:
         return name + (system_.spring().none() ? "" : " - spring");
     }
     /// Returns whether a wall carries the pull at this angle.
-    [[nodiscard]] bool at_wall(double theta) const {
+    bool at_wall(double theta) const {
         const auto& walls = system_.walls();
         return walls && (theta == walls->lower || theta == walls->upper);
     }
@@ -230,7 +230,7 @@ private:
         add("; the hardest impact had velocity {:.5g}, at t = {}.", hardest->velocity, at(hardest->t));
     }
 
-    [[nodiscard]] std::string slip_from_wall(const model::Event& event) const {
+    std::string slip_from_wall(const model::Event& event) const {
         if (!has_reasons()) return "it left the wall";
         const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
         if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
@@ -239,7 +239,7 @@ private:
     }
 
     /// Returns whether M is constant throughout the run.
-    [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
+    bool free() const { return constant_from_ <= run_.t_start; }
 
     // ---- beginning and course
 
@@ -307,7 +307,7 @@ private:
         }
     }
 
-    [[nodiscard]] std::string friction_text() const {
+    std::string friction_text() const {
         const model::Friction& law = system_.friction();
         const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
         const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
@@ -537,7 +537,7 @@ private:
 
     /// Explains why and in which direction it slipped. `has_torque`: a sentence about |M - k theta| precedes
     /// ("this torque").
-    [[nodiscard]] std::string slip(const model::Event& event, bool has_torque) const {
+    std::string slip(const model::Event& event, bool has_torque) const {
         if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
         if (!has_reasons()) return "it slipped";
@@ -595,7 +595,7 @@ private:
         }
     }
 
-    [[nodiscard]] bool held_at_most() const {
+    bool held_at_most() const {
         return model::cannot_break_away(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
     }
 
@@ -727,8 +727,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
-    [[nodiscard]] const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
+    std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
+    const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
 
     void tell_setting() {
         const std::size_t n = system_.bodies.size(), links = system_.joints.size() - n;

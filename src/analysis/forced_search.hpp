@@ -27,8 +27,8 @@ public:
     /// Makes returns until the motion closes; checks after each of `counts`.
     std::optional<Closed> follow(Return first, const std::vector<int>& counts);
 
-    [[nodiscard]] const std::vector<Return>& seen() const { return seen_; }
-    [[nodiscard]] std::optional<model::Outcome> failed() const { return failed_; }
+    const std::vector<Return>& seen() const { return seen_; }
+    std::optional<model::Outcome> failed() const { return failed_; }
 
 private:
     /// A place, and its return.
@@ -38,18 +38,18 @@ private:
         Return back;
         Eigen::VectorXd off = {};
         double residual = 0;
-        [[nodiscard]] bool keeps_mode() const { return back.mode == mode; }
+        bool keeps_mode() const { return back.mode == mode; }
     };
 
     std::optional<Closed> closes(double near);
     Closed shortest(Closed found);
-    [[nodiscard]] bool approaches(const Eigen::VectorXd& x, std::size_t m) const;
+    bool approaches(const Eigen::VectorXd& x, std::size_t m) const;
     std::optional<Closed> itself(const Return& from, int m);
     std::optional<Closed> newton(const Return& from, int m, double farthest, bool waits);
     std::optional<Try> at(const Eigen::VectorXd& x, const std::optional<HeldMode>& mode, int m);
     /// Tries fractions of a Newton step; empty if none reduces the residual.
     std::optional<Try> nearer(const Try& now, const Eigen::VectorXd& step, int m);
-    [[nodiscard]] bool is_within(double residual, double tolerance) const {
+    bool is_within(double residual, double tolerance) const {
         return residual <= tolerance || residual <= map_.rounding();
     }
 
@@ -80,24 +80,24 @@ protected:
     /// Returns a later place with the scale of the motion there.
     virtual std::optional<Map::Return> measured(const Map::Return& from) = 0;
     /// The range of the last measured period.
-    [[nodiscard]] virtual double range() const = 0;
+    virtual double range() const = 0;
     /// The size of a motion at this place.
-    [[nodiscard]] virtual double size_at(const Map::Return& place) const = 0;
+    virtual double size_at(const Map::Return& place) const = 0;
     /// Completes the answer for a closed motion. Returns false if it does not qualify, or is unstable and `any` is
     /// false.
     virtual bool complete(const Closed& found, bool any) = 0;
     /// Returns whether every motion stays bounded.
-    [[nodiscard]] virtual bool is_bounded() const = 0;
+    virtual bool is_bounded() const = 0;
     /// Returns whether nothing restores the angle, which may then drift for ever and counts as growing.
-    [[nodiscard]] virtual bool is_free() const = 0;
+    virtual bool is_free() const = 0;
 
     SteadyMotion facts_;
 
 private:
-    [[nodiscard]] double growth_of(const std::vector<Map::Return>& seen) const;
+    double growth_of(const std::vector<Map::Return>& seen) const;
     void note_failure(model::Outcome outcome, const std::vector<Map::Return>& seen);
     /// The greatest size among the places `from` to `until` - 1.
-    [[nodiscard]] double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
+    double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
 };
 
 }  // namespace dinal::analysis

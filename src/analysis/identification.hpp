@@ -30,8 +30,8 @@ struct IdentifyQuestion {
     std::optional<model::Excitation> M = {};
     std::array<std::optional<double>, unknown_count> given = {};  ///< values of parameters that are not fitted
 
-    [[nodiscard]] bool gives(Unknown which) const { return given[static_cast<std::size_t>(which)].has_value(); }
-    [[nodiscard]] double given_or(Unknown which, double otherwise) const {
+    bool gives(Unknown which) const { return given[static_cast<std::size_t>(which)].has_value(); }
+    double given_or(Unknown which, double otherwise) const {
         return given[static_cast<std::size_t>(which)].value_or(otherwise);
     }
 };

@@ -20,7 +20,7 @@ public:
     explicit Products(const Eigen::MatrixXd& all) : left_(all.transpose() * all), whole_(left_.diagonal()) {}
 
     /// The fraction of a column's length that is orthogonal to the eliminated columns.
-    [[nodiscard]] double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
+    double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
     [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const { return left_(i, j); }
     void take_out(Eigen::Index i) {
         constexpr double dependent = 1e-6;
@@ -29,7 +29,7 @@ public:
         left_ -= column * (column.transpose() / column[i]);
         ++taken_;
     }
-    [[nodiscard]] int taken() const { return taken_; }
+    int taken() const { return taken_; }
 
 private:
     Eigen::MatrixXd left_;
@@ -103,8 +103,8 @@ public:
     }
 
     /// The significance of the first term, in standard deviations of chance; 0 if there is none.
-    [[nodiscard]] double most() const { return most_; }
-    [[nodiscard]] const std::vector<Eigen::Index>& found() const { return found_; }
+    double most() const { return most_; }
+    const std::vector<Eigen::Index>& found() const { return found_; }
 
 private:
     /// The products of slopes, terms, faster terms and, last, the residual, filtered if the residual has a memory.
@@ -121,7 +121,7 @@ private:
     }
 
     /// The significance of a column in the residual, in standard deviations.
-    [[nodiscard]] double score(Eigen::Index i) const {
+    double score(Eigen::Index i) const {
         constexpr double least_own_share = 0.02, least_spare = 8;
         if (!(products_.own(i) > least_own_share)) return 0;
         const double along = products_(i, last_), square = along * along / products_(i, i);

@@ -38,7 +38,7 @@ public:
 private:
     static constexpr std::size_t most_jumps = 12, most_born = 32;
 
-    [[nodiscard]] bool stopped() const { return stopped_; }
+    bool stopped() const { return stopped_; }
 
     /// Searches from the start of the previous motion, or from the requested start.
     SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
@@ -82,7 +82,7 @@ private:
     }
 
     /// The circuit of a motion that may not be the only one; null if it has none.
-    [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
+    std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
         const bool slides = motion.status == SteadyStatus::rest && motion.by_returns.question && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
@@ -174,7 +174,7 @@ private:
         curve_.branches.push_back(std::move(path.points));
     }
     /// Returns whether a branch of limit cycles ended at this Hopf point.
-    [[nodiscard]] bool ends_at(const BranchPoint& hopf) const {
+    bool ends_at(const BranchPoint& hopf) const {
         constexpr double near = 1e-3, small = 1e-2;
         return std::any_of(curve_.branches.begin(), curve_.branches.end(), [&](const auto& branch) {
             double most = 0;
@@ -269,7 +269,7 @@ private:
                                 .landed = after.motion});
     }
 
-    [[nodiscard]] bool is_known(double p, const SteadyMotion& motion) const {
+    bool is_known(double p, const SteadyMotion& motion) const {
         for (const auto& branch : curve_.branches) {
             for (const BranchPoint& point : branch) {
                 if (!point.asked || std::fabs(point.parameter - p) > 1e-9 * range_) continue;

@@ -263,8 +263,8 @@ public:
     std::string take_text() { return std::move(sentences_); }
 
 private:
-    [[nodiscard]] bool several() const { return !names_.empty(); }
-    [[nodiscard]] std::string number(double x) const {
+    bool several() const { return !names_.empty(); }
+    std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
     void tell_period() {

@@ -616,7 +616,7 @@ private:
     }
 
     /// The first column that measures this quantity, or nullptr.
-    [[nodiscard]] const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
+    const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
         const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const MeasuredColumn& column) {
             return column.joint == joint && column.quantity == quantity;
         });
@@ -624,7 +624,7 @@ private:
     }
 
     /// The measured column of angles whose zero has this name.
-    [[nodiscard]] std::optional<int> column_with_zero(std::string_view name) const {
+    std::optional<int> column_with_zero(std::string_view name) const {
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const bool is_angle = columns_[i].quantity == Measure::theta;
             if (is_angle && before_names(system_, columns_[i].joint) + "offset" == name) return static_cast<int>(i);
@@ -633,7 +633,7 @@ private:
     }
 
     /// Returns whether the initial angle matters: without a spring, no velocity depends on it.
-    [[nodiscard]] bool place_counts(std::size_t body) const {
+    bool place_counts(std::size_t body) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
             if (!joint.is_on(body)) continue;
@@ -642,7 +642,7 @@ private:
         return false;
     }
 
-    [[nodiscard]] double first_velocity(std::size_t body) const {
+    double first_velocity(std::size_t body) const {
         const MeasuredColumn* velocity = measured(body, Measure::velocity);
         if (velocity != nullptr && !std::isnan(velocity->numbers[0])) return velocity->numbers[0];
         const MeasuredColumn* theta = measured(body, Measure::theta);
@@ -677,7 +677,7 @@ private:
     }
 
     /// Returns whether this parameter is a function or an excitation.
-    [[nodiscard]] bool is_function(std::string_view name) const {
+    bool is_function(std::string_view name) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
             const model::ContactFriction& friction = joint.friction;
@@ -918,7 +918,7 @@ private:
     }
 
     /// The parameter of this name if it is fitted.
-    [[nodiscard]] std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
+    std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
         for (std::size_t i = 0; i < free_.size(); ++i) {
             if (free_[i].name == name) return p[static_cast<Eigen::Index>(i)];
         }

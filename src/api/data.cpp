@@ -39,7 +39,7 @@ public:
             right_.push_back(column.numbers() != nullptr);
         }
     }
-    [[nodiscard]] std::string lines(std::size_t width) const {
+    std::string lines(std::size_t width) const {
         std::vector<std::string> lines(rows_ + 1);
         std::size_t used = 0, left_out = 0;
         for (std::size_t column = 0; column < cells_.size(); ++column) {

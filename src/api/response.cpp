@@ -45,7 +45,7 @@ struct HarmonicSweep {
     std::optional<double> frequency = {};  ///< none: the frequency is varied
     double amplitude = 1;                  ///< torque, if the frequency is varied
 
-    [[nodiscard]] double frequency_at(double x) const {
+    double frequency_at(double x) const {
         if (frequency) return *frequency;
         return column.name == "omega" ? x / (2 * std::numbers::pi) : column.name == "period" ? 1 / x : x;
     }
@@ -254,9 +254,9 @@ public:
     }
 
     /// Returns whether there are two parameters: the second is varied at each value of the first.
-    [[nodiscard]] bool is_plane() const { return parameters_.size() > 1; }
+    bool is_plane() const { return parameters_.size() > 1; }
     /// The values of the first of two parameters; a dummy value if there is one parameter.
-    [[nodiscard]] std::vector<double> beside_values() const {
+    std::vector<double> beside_values() const {
         if (!is_plane()) return {0};
         const auto values = parameters_.front().numbers()->values();
         return {values.begin(), values.end()};
@@ -264,17 +264,17 @@ public:
     /// Sets the first of two parameters.
     void set_beside(double value) { beside_ = value; }
 
-    [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    [[nodiscard]] const model::System& system() const { return *system_; }
+    const std::vector<double>& values() const { return values_; }
+    const model::System& system() const { return *system_; }
     /// Returns whether rows are wanted at the given values only.
-    [[nodiscard]] bool is_list() const { return !asked_.between; }
-    [[nodiscard]] bool doubled() const { return asked_.doubled; }
-    [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
+    bool is_list() const { return !asked_.between; }
+    bool doubled() const { return asked_.doubled; }
+    model::State start() const { return {asked_.theta0, asked_.velocity0}; }
     /// Returns whether M is harmonic, so that closed forms exist for comparison.
-    [[nodiscard]] bool harmonic() const { return !function_; }
-    [[nodiscard]] bool over_amplitude() const { return varied_ == "amplitude"; }
-    [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
-    [[nodiscard]] double frequency_at(double x) const {
+    bool harmonic() const { return !function_; }
+    bool over_amplitude() const { return varied_ == "amplitude"; }
+    bool over_frequency() const { return varied_ == "frequency"; }
+    double frequency_at(double x) const {
         const auto given = [&](const char* name, const std::optional<double>& option) {
             const auto varied = varied_value(name, x);
             return varied ? varied : option;
@@ -283,11 +283,9 @@ public:
         if (const auto omega = given("omega", asked_.omega)) return *omega / (2 * std::numbers::pi);
         return 1 / given("period", asked_.period).value_or(1);
     }
-    [[nodiscard]] double amplitude_at(double x) const {
-        return varied_value("amplitude", x).value_or(asked_.amplitude);
-    }
+    double amplitude_at(double x) const { return varied_value("amplitude", x).value_or(asked_.amplitude); }
     /// One column for each parameter.
-    [[nodiscard]] std::vector<VariedColumn> columns() const {
+    std::vector<VariedColumn> columns() const {
         const ColumnUnits in(system_->units);
         std::vector<VariedColumn> columns;
         for (const DataColumn& parameter : parameters_) {
@@ -302,9 +300,7 @@ public:
         return columns;
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question(double x) const {
-        return function_ ? question_by_user(x) : question_of_sine(x);
-    }
+    analysis::SteadyQuestion question(double x) const { return function_ ? question_by_user(x) : question_of_sine(x); }
 
 private:
     /// Pushes the table returned by `at`.
@@ -321,7 +317,7 @@ private:
                               lua::describe(L_, -1), varied_, x, system_->named ? "{ load = p.speed }" : "p.speed"));
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question_of_sine(double x) const {
+    analysis::SteadyQuestion question_of_sine(double x) const {
         const double frequency = frequency_at(x);
         auto M = options_.value_or_fail(model::Excitation::make(
             model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
@@ -334,7 +330,7 @@ private:
         return question;
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question_by_user(double x) const {
+    analysis::SteadyQuestion question_by_user(double x) const {
         push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
         const auto* changed = own.object<SystemHandle>("system");
@@ -359,9 +355,8 @@ private:
         return question;
     }
 
-    [[nodiscard]] analysis::Repetition repetition_at(double x, const lua::Options& own,
-                                                     const analysis::SteadyQuestion& question,
-                                                     const std::optional<double>& period) const {
+    analysis::Repetition repetition_at(double x, const lua::Options& own, const analysis::SteadyQuestion& question,
+                                       const std::optional<double>& period) const {
         const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
         // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
@@ -384,7 +379,7 @@ private:
     }
 
     /// The value of this parameter when the last one is x; none if it is not varied.
-    [[nodiscard]] std::optional<double> varied_value(std::string_view name, double x) const {
+    std::optional<double> varied_value(std::string_view name, double x) const {
         if (name == varied_) return x;
         return is_plane() && name == parameters_.front().name ? std::optional(beside_) : std::nullopt;
     }
@@ -472,7 +467,7 @@ struct ResponseRow {
     analysis::SteadyStatus status;  ///< status of the whole motion
     std::vector<RowOfJoint> joints;
 
-    [[nodiscard]] const analysis::SteadyMotion& motion() const { return joints.front().motion; }
+    const analysis::SteadyMotion& motion() const { return joints.front().motion; }
 };
 
 /// The motion of each body and link at this point, without its run.

@@ -394,8 +394,8 @@ struct Stumble {
     std::vector<lua::Token> all = {};
     std::size_t at = 0;  ///< index of the rejected token in `all`; 0 if unknown or the first
 
-    [[nodiscard]] const lua::Token& token() const { return all[at]; }
-    [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
+    const lua::Token& token() const { return all[at]; }
+    const lua::Token& before() const { return all[at - 1]; }
 };
 
 bool is_operand(const lua::Token& token) {

@@ -197,11 +197,11 @@ private:
     }
 
     /// Returns whether commas are decimal: also with tabs, unless there are decimal points, when 1,5 is an error.
-    [[nodiscard]] bool decimal_comma() const {
+    bool decimal_comma() const {
         return separator_ == Separator::semicolon || (separator_ == Separator::tab && !has_points_);
     }
 
-    [[nodiscard]] bool has_decimal_points() const {
+    bool has_decimal_points() const {
         return std::any_of(rows_.begin(), rows_.end(), [](const Row& row) {
             for (std::size_t at = row.text.find('.'); at != std::string_view::npos; at = row.text.find('.', at + 1)) {
                 if (at > 0 && at + 1 < row.text.size() && text::is_digit(row.text[at - 1]) &&
@@ -245,7 +245,7 @@ private:
         return quoted ? text::trimmed(field.substr(1, field.size() - 2)) : std::string_view();
     }
 
-    [[nodiscard]] std::optional<double> number_in(std::string_view field) const {
+    std::optional<double> number_in(std::string_view field) const {
         if (all_in_quotes_) return parse_field(in_quotes(field), has_quoted_commas_ || decimal_comma());
         if (has_quoted_commas_ && field.starts_with('"')) {
             if (const std::string_view inside = in_quotes(field); !inside.empty()) return parse_field(inside, true);
@@ -253,9 +253,7 @@ private:
         return parse_field(field, decimal_comma());
     }
 
-    [[nodiscard]] bool is_number(std::string_view field) const {
-        return !field.empty() && number_in(field).has_value();
-    }
+    bool is_number(std::string_view field) const { return !field.empty() && number_in(field).has_value(); }
 
     /// Drops the last line if a logger was switched off while writing it.
     void leave_out_cut_line() {
@@ -267,7 +265,7 @@ private:
     }
 
     /// Returns whether "t,100,200" is a line of names: the first column has numbers in all other rows.
-    [[nodiscard]] bool is_word_above_numbers(std::string_view first) const {
+    bool is_word_above_numbers(std::string_view first) const {
         if (rows_.size() < 2 || first.empty() || is_number(first)) return false;
         std::vector<std::string_view> fields;
         return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
@@ -292,7 +290,7 @@ private:
 
     /// Returns whether the second line may contain units: it has words and gaps, and each word has only numbers below
     /// it.
-    [[nodiscard]] bool may_be_units() const {
+    bool may_be_units() const {
         std::vector<std::string_view> units, fields;
         split(rows_.front().text, separator_, units);
         if (units.size() != result_.columns.size() ||

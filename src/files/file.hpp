@@ -24,7 +24,7 @@ public:
     explicit Descriptor(int number) : number_(number) {}
     ~Descriptor() { close(); }
     void close();
-    [[nodiscard]] int number() const { return number_; }
+    int number() const { return number_; }
 
 private:
     int number_;
@@ -59,7 +59,7 @@ public:
     void used(const char* end);
 
     /// Returns whether writing has failed, so that further output is useless.
-    [[nodiscard]] bool failed() const { return failure_ != 0; }
+    bool failed() const { return failure_ != 0; }
 
     /// Writes the rest and replaces the old file. Call once.
     text::Expected<Written> commit();

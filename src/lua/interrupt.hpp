@@ -93,8 +93,8 @@ struct WorkerWatch {
     std::atomic<double> since = 0;                      ///< start of the task, seconds of the watcher's clock
     const WorkerWatch* outer = nullptr;                 ///< watch of the worker that waits for this one
 
-    [[nodiscard]] bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
-    [[nodiscard]] bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }
+    bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
+    bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }
 };
 /// The watch of this thread, or nullptr.
 [[nodiscard]] const WorkerWatch* watch_here() noexcept;

@@ -25,7 +25,7 @@ public:
 
     /// Returns whether a user function has failed during this call. From then on all functions return NaN, until
     /// may_go_on().
-    [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
+    bool failed() const { return failed_ || failed_before_; }
     /// Makes functions receive their states in a table with these names, as fourth argument.
     void name_states(const std::vector<std::string>& names);
     /// Makes functions receive theta and velocity as tables with these names, filled from the first states.
@@ -46,18 +46,18 @@ private:
     friend class LuaMemory;
     void keep_error_on_top();
     /// Returns whether angles and velocities of several bodies precede the states.
-    [[nodiscard]] bool has_bodies(std::span<const double> states) const {
+    bool has_bodies(std::span<const double> states) const {
         return !bodies_.empty() && states.size() == 2 * bodies_.size() + names_.size();
     }
     /// Pushes theta, velocity and, if any, the states; returns how many values.
     int push_motion(const model::State& state, std::span<const double> states) const;
     void push_states(std::span<const double> states) const;
     /// Reads the states back after a user's action; returns false if one is invalid.
-    [[nodiscard]] bool read_states(std::span<double> states) const;
-    [[nodiscard]] bool read_motion(std::span<double> states) const;
+    bool read_states(std::span<double> states) const;
+    bool read_motion(std::span<double> states) const;
     void push_table(int table, std::span<const int> names, std::span<const double> values) const;
-    [[nodiscard]] bool read_table(int table, std::span<const int> names, std::span<double> values) const;
-    [[nodiscard]] std::vector<int> kept_names(const std::vector<std::string>& names) const;
+    bool read_table(int table, std::span<const int> names, std::span<double> values) const;
+    std::vector<int> kept_names(const std::vector<std::string>& names) const;
 
     lua_State* L_;
     CallState* outer_;
@@ -94,7 +94,7 @@ public:
     ~LuaMemory() override;
     /// A copy of the table on the top, or of the table that the function on the top returns; pops it. Null on failure.
     static std::shared_ptr<model::terms::Memory> from_top();
-    [[nodiscard]] std::shared_ptr<model::terms::Memory> copy() const override;
+    std::shared_ptr<model::terms::Memory> copy() const override;
     void push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
 
 private:
@@ -132,14 +132,14 @@ public:
 
     /// Returns whether it receives theta and velocity: a Lua function (or __call) of two or more parameters, or with
     /// `...`.
-    [[nodiscard]] bool feedback() const { return feedback_; }
-    [[nodiscard]] const FunctionRole& role() const { return role_; }
+    bool feedback() const { return feedback_; }
+    const FunctionRole& role() const { return role_; }
     /// Reads the function as a formula, unless done in this call. Returns why that fails; empty if it succeeds.
     std::string obstacle();
     /// The result of the last obstacle().
-    [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
+    const std::string& last_obstacle() const { return reading_->obstacle; }
     /// The formula if it has been read, otherwise null.
-    [[nodiscard]] model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
+    model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 
@@ -151,15 +151,15 @@ private:
     static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
-    [[nodiscard]] Arguments arguments_in(const CallState& call) const;
+    Arguments arguments_in(const CallState& call) const;
     /// Returns whether the formula expects these states.
-    [[nodiscard]] bool fits(std::span<const double> states) const;
+    bool fits(std::span<const double> states) const;
     /// Returns whether the function is a friction law: smooth between its conditions, and never called with negative
     /// speeds in Lua.
-    [[nodiscard]] bool is_law() const { return !role_.may_be_negative; }
+    bool is_law() const { return !role_.may_be_negative; }
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
     std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
-    [[nodiscard]] bool is_allowed(double result) const;
+    bool is_allowed(double result) const;
     double fail(CallState& call, int status, double t) const;
     bool is_good(lua_State* L, double& result) const;
 

@@ -64,19 +64,19 @@ struct Drive {
     std::vector<double> theta0, velocity0;  ///< one for each body
 
     // For a single body, or the first one.
-    [[nodiscard]] const Excitation& M() const { return loads.front(); }
+    const Excitation& M() const { return loads.front(); }
     /// The sum of all loads.
-    [[nodiscard]] Excitation sum_of_loads() const {
+    Excitation sum_of_loads() const {
         Excitation sum;
         for (const Excitation& load : loads) sum = sum + load;
         return sum;
     }
-    [[nodiscard]] const Excitation& belt() const { return belts.front(); }
-    [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }
+    const Excitation& belt() const { return belts.front(); }
+    State start() const { return {theta0.front(), velocity0.front()}; }
     void start_at(const State& state) { theta0.front() = state.theta, velocity0.front() = state.velocity; }
 
     /// Returns whether anything except loads acts or is requested.
-    [[nodiscard]] bool has_more() const {
+    bool has_more() const {
         return !states.empty() || !events.empty() || !base.components().empty() ||
                std::any_of(belts.begin(), belts.end(),
                            [](const Excitation& belt) { return !belt.components().empty(); });

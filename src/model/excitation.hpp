@@ -41,7 +41,7 @@ public:
     Components() = default;
     explicit Components(std::vector<Component> all);
 
-    [[nodiscard]] std::span<const Component> all() const { return stretch_; }
+    std::span<const Component> all() const { return stretch_; }
     [[nodiscard]] static Components joined(const Components& a, const Components& b);
 
 private:
@@ -54,10 +54,10 @@ private:
     Components(std::shared_ptr<Places> places, std::size_t first, std::size_t count);
 
     /// The index of this list's first component in the storage.
-    [[nodiscard]] std::size_t first_place() const;
+    std::size_t first_place() const;
     /// Claim `count` free places behind or before this list; return false if they are taken.
-    [[nodiscard]] bool claim_after(std::size_t count) const;
-    [[nodiscard]] bool claim_before(std::size_t count) const;
+    bool claim_after(std::size_t count) const;
+    bool claim_before(std::size_t count) const;
 
     std::shared_ptr<Places> places_;
     std::span<const Component> stretch_;
@@ -89,52 +89,52 @@ public:
     /// Fails with a sentence that names the option, its value and its range.
     static text::Expected<Excitation> make(Term term);
 
-    [[nodiscard]] double value(double t, const State& state = {}) const;
+    double value(double t, const State& state = {}) const;
     /// The limit from the left: differs from value(t) only where M jumps.
-    [[nodiscard]] double value_before(double t, const State& state = {}) const;
+    double value_before(double t, const State& state = {}) const;
     /// The limit from the right: value(t), but scripted functions are evaluated slightly later, since their authors may
     /// have written `t > 0.5` as well as `t >= 0.5`.
-    [[nodiscard]] double value_after(double t, const State& state = {}) const;
+    double value_after(double t, const State& state = {}) const;
     /// The first time after t at which M or a derivative of it jumps; `never` if there is none.
-    [[nodiscard]] double next_break(double t) const;
+    double next_break(double t) const;
     /// The time from which M is constant for ever; `never` if unknown.
-    [[nodiscard]] double constant_from() const;
+    double constant_from() const;
     /// An upper bound of |M|; `never` if unknown.
-    [[nodiscard]] double most() const;
+    double most() const;
     /// The longest step from t over which samples at most `spacing` times the step apart miss no detail of a smooth
     /// term; `never` if no detail lies ahead.
-    [[nodiscard]] double view(double t, double spacing) const;
+    double view(double t, double spacing) const;
     /// The detail between two times that needs the closest sampling.
-    [[nodiscard]] terms::Detail finest_detail(double from, double to) const;
+    terms::Detail finest_detail(double from, double to) const;
     /// Returns whether M depends on theta or velocity.
-    [[nodiscard]] bool has_feedback() const;
-    [[nodiscard]] bool has_script() const;
+    bool has_feedback() const;
+    bool has_script() const;
     /// Returns whether all terms can be evaluated at times that lie between two doubles.
-    [[nodiscard]] bool tells_rests() const;
+    bool tells_rests() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many values were computed: fewer if one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 
     /// Returns, after a value that was not finite, whether the functions in M may be evaluated at other times.
-    [[nodiscard]] bool may_go_on() const;
+    bool may_go_on() const;
     /// Calls `call` with each user function.
     void each_function(const std::function<void(UserFunction&)>& call) const;
 
-    [[nodiscard]] Excitation scaled(double gain) const;
-    [[nodiscard]] Excitation delayed(double delay) const;
+    Excitation scaled(double gain) const;
+    Excitation delayed(double delay) const;
     /// This excitation, but 0 outside from <= t < to.
-    [[nodiscard]] Excitation windowed(double from, double to) const;
+    Excitation windowed(double from, double to) const;
     /// This excitation with every user function replaced.
     using FunctionChange = std::function<std::shared_ptr<UserFunction>(const std::shared_ptr<UserFunction>&)>;
-    [[nodiscard]] Excitation with_functions(const FunctionChange& other) const;
+    Excitation with_functions(const FunctionChange& other) const;
     friend Excitation operator+(const Excitation& a, const Excitation& b);
 
-    [[nodiscard]] std::span<const Component> components() const { return components_.all(); }
+    std::span<const Component> components() const { return components_.all(); }
 
 private:
     explicit Excitation(Components components) : components_(std::move(components)) {}
     /// This excitation with `change` applied to every component.
     template <class Change>
-    [[nodiscard]] Excitation changed(Change change) const;
+    Excitation changed(Change change) const;
 
     Components components_;
 };

@@ -47,7 +47,7 @@ struct Sum {
         const double s = std::sin(angle.rounded), c = std::cos(angle.rounded);
         sine = amplitude * (s + angle.lack * c), cosine = amplitude * (c - angle.lack * s);
     }
-    [[nodiscard]] double at(double sine_of, double cosine_of) const {
+    double at(double sine_of, double cosine_of) const {
         return std::clamp(sine * cosine_of + cosine * sine_of, -peak, peak);
     }
 };

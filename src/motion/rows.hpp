@@ -25,8 +25,8 @@ public:
     }
 
     /// The time of the next row; `never` after the last one.
-    [[nodiscard]] double next_time() const { return next_time_; }
-    [[nodiscard]] std::size_t next_row() const { return next_; }
+    double next_time() const { return next_time_; }
+    std::size_t next_row() const { return next_; }
 
     void put(const model::State& y, double M, double friction) {
         double* row = column_ + next_;
@@ -54,7 +54,7 @@ public:
         }
     }
     /// The number of steps of length h between two rows if they coincide to rounding, otherwise 0.
-    [[nodiscard]] std::size_t steps_per_row(double h) const {
+    std::size_t steps_per_row(double h) const {
         const double ratio = grid_.dt() / h;
         const double whole = std::round(ratio);
         return whole >= 1 && std::fabs(ratio - whole) <= 4e-16 * whole ? static_cast<std::size_t>(whole) : 0;

@@ -24,7 +24,7 @@ struct Extent {
         low = std::min(low, other.low);
         high = std::max(high, other.high);
     }
-    [[nodiscard]] bool empty() const { return low > high; }
+    bool empty() const { return low > high; }
 };
 
 /// Extends y to the other edge of an area, its base or zero.

@@ -71,7 +71,7 @@ public:
                                                       CAIRO_FORMAT_ARGB32, width, height, 4 * width)) {}
 
     /// A drawing context in the coordinates of the sheet.
-    [[nodiscard]] Context context() const {
+    Context context() const {
         Context context(cairo_create(surface.get()));
         cairo_scale(context.get(), scale_, scale_);
         cairo_translate(context.get(), -corner_.x, -corner_.y);
@@ -203,9 +203,9 @@ public:
     }
 
 private:
-    [[nodiscard]] double x_of(double value) const { return panel_.left + panel_.view.x(value) * size_.width; }
-    [[nodiscard]] double y_of(double value) const { return panel_.bottom - panel_.view.y(value) * size_.height; }
-    [[nodiscard]] bool sees(double x, double y) const {
+    double x_of(double value) const { return panel_.left + panel_.view.x(value) * size_.width; }
+    double y_of(double value) const { return panel_.bottom - panel_.view.y(value) * size_.height; }
+    bool sees(double x, double y) const {
         const double right = panel_.view.x(x), up = panel_.view.y(y);
         return right >= 0 && right <= 1 && up >= 0 && up <= 1;
     }
@@ -222,7 +222,7 @@ private:
         cairo_restore(to);
     }
 
-    [[nodiscard]] Image image() const {
+    Image image() const {
         constexpr double most = 4e6;  // pixels
         return {{panel_.left, panel_.top}, size_, std::min(resolution, std::sqrt(most / (size_.width * size_.height)))};
     }
@@ -324,19 +324,19 @@ private:
         return curve.style == Style::points && curve.size() > most_separate_points;
     }
 
-    [[nodiscard]] std::uint32_t colour_of(std::size_t curve) const {
+    std::uint32_t colour_of(std::size_t curve) const {
         const int own = figure_.curves[curve].colour;
         return palette[(own > 0 ? static_cast<std::size_t>(own - 1) : curve) % palette.size()];
     }
 
     /// A point of a curve on the page. Far points are moved nearer, as cairo uses 32-bit coordinates.
-    [[nodiscard]] Point at(const Curve& curve, std::size_t place) const {
+    Point at(const Curve& curve, std::size_t place) const {
         constexpr double far = 700;  // lengths of the axes
         return {panel_.left + std::clamp(panel_.view.x(curve.x.values[place]), -far, far) * size_.width,
                 panel_.bottom - std::clamp(panel_.view.y(curve.y.values[place]), -far, far) * size_.height};
     }
 
-    [[nodiscard]] bool has(const Curve& curve, std::size_t place) const {
+    bool has(const Curve& curve, std::size_t place) const {
         return panel_.view.x.has(curve.x.values[place]) && panel_.view.y.has(curve.y.values[place]) &&
                (!curve.base || panel_.view.y.has(curve.base->values[place]));
     }

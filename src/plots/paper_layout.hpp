@@ -48,7 +48,7 @@ struct ColourBar {
 struct NamedEnd {
     std::size_t curve;
     double right, up;
-    [[nodiscard]] bool outside() const { return right > 0.9; }
+    bool outside() const { return right > 0.9; }
 };
 std::vector<NamedEnd> named_ends(const Figure& figure, const View& view);
 inline constexpr double to_end_name = 0.9 * em;  // distance from the box

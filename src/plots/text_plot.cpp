@@ -23,12 +23,8 @@ namespace {
 struct Projection {
     View view;
     Box box;  // size in dots between the edges
-    [[nodiscard]] double x(double value) const {
-        return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan("");
-    }
-    [[nodiscard]] double y(double value) const {
-        return view.y.has(value) ? (1 - view.y(value)) * (box.height - 1) : std::nan("");
-    }
+    double x(double value) const { return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan(""); }
+    double y(double value) const { return view.y.has(value) ? (1 - view.y(value)) * (box.height - 1) : std::nan(""); }
 };
 
 struct Signs {
@@ -316,8 +312,8 @@ public:
         }
     }
 
-    [[nodiscard]] std::size_t width() const { return width_; }
-    [[nodiscard]] std::string text() const {
+    std::size_t width() const { return width_; }
+    std::string text() const {
         constexpr std::string_view empty_braille = "\xE2\xA0\x80";
         std::string_view text = text_;
         for (;;) {
@@ -468,8 +464,8 @@ public:
     }
 
 private:
-    [[nodiscard]] TextLine empty_line() const { return TextLine(format_.colours); }
-    [[nodiscard]] std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
+    TextLine empty_line() const { return TextLine(format_.colours); }
+    std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
 
     /// Label width and number of ticks depend on each other: repeats until they agree.
     void lay_out() {
@@ -506,16 +502,16 @@ private:
         }
     }
 
-    [[nodiscard]] bool long_x_label() const { return text::columns(x_label()) > letters_at_end - 1; }
-    [[nodiscard]] std::string x_label() const {
+    bool long_x_label() const { return text::columns(x_label()) > letters_at_end - 1; }
+    std::string x_label() const {
         return shown(figure_.x.label + (x_ticks_.offset.empty() ? "" : " (" + x_ticks_.offset + ")"));
     }
-    [[nodiscard]] std::string y_label() const {
+    std::string y_label() const {
         return shown(figure_.y.label + (y_ticks_.offset.empty() ? "" : " (" + y_ticks_.offset + ")"));
     }
 
     /// The label of the vertical axis and the legend, on a limited number of lines.
-    [[nodiscard]] TextBlock head_lines() const {
+    TextBlock head_lines() const {
         TextBlock lines;
         TextLine line = empty_line();
         const std::string name = figure_.axes ? y_label() : "";
@@ -544,7 +540,7 @@ private:
         return lines;
     }
 
-    [[nodiscard]] TextLine centred(const std::string& words) const {
+    TextLine centred(const std::string& words) const {
         const std::string whole = shown(words);
         const std::string_view text = text::cut_to_columns(whole, static_cast<std::size_t>(format_.columns));
         const std::size_t before = figure_.axes ? label_width_ + 2 : 0;
@@ -558,7 +554,7 @@ private:
     }
 
     /// The letters at the right edge at the ends of the curves.
-    [[nodiscard]] std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
+    std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
         std::vector<std::vector<std::uint8_t>> rows(static_cast<std::size_t>(rows_));
         for (std::size_t i = 0; letters_at_ends(figure_) && i < figure_.curves.size(); ++i) {
             const Curve& curve = figure_.curves[i];
@@ -574,10 +570,10 @@ private:
         return rows;
     }
 
-    [[nodiscard]] std::size_t row_of(double dot) const {
+    std::size_t row_of(double dot) const {
         return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 4 : 2);
     }
-    [[nodiscard]] std::size_t column_of(double dot) const {
+    std::size_t column_of(double dot) const {
         return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 2 : 1);
     }
 
@@ -655,7 +651,7 @@ private:
         }
     }
 
-    [[nodiscard]] TextLine stuck_line() const {
+    TextLine stuck_line() const {
         const auto width = static_cast<std::size_t>(columns_);
         std::vector<bool> stuck(width, false);
         for (const Interval& span : figure_.stuck) {

@@ -15,7 +15,7 @@ public:
     Projected(const Curve& curve, const Paper& paper) : curve_(curve), paper_(paper) {}
 
     /// Returns whether the point exists: finite, and positive on logarithmic axes.
-    [[nodiscard]] bool has(std::size_t i) const {
+    bool has(std::size_t i) const {
         return paper_.view.x.has(curve_.x.values[i]) && paper_.view.y.has(curve_.y.values[i]) &&
                (!curve_.base || paper_.view.y.has(curve_.base->values[i]));
     }

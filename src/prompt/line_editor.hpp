@@ -47,8 +47,7 @@ public:
     explicit LineEditor(lua_State* L);
 
     /// Reads a line. `pending` are the previous lines of an unfinished chunk, `cue` is its missing part, shown in grey.
-    [[nodiscard]] TypedLine read(const std::string& prompt, const std::string& pending = "",
-                                 const std::string& cue = "") const;
+    TypedLine read(const std::string& prompt, const std::string& pending = "", const std::string& cue = "") const;
 
     /// Adds an entry, possibly of several lines, to the history of this and later sessions.
     void remember(const std::string& entry);

@@ -24,7 +24,7 @@ public:
     text::Expected<bool> save(const std::string& file);
 
     /// Returns whether the file belongs to this session: a script that loads itself would never end.
-    [[nodiscard]] bool writes(const std::string& file) const;
+    bool writes(const std::string& file) const;
 
 private:
     struct Entry {
@@ -32,8 +32,8 @@ private:
         Evaluated result;
     };
     [[nodiscard]] static bool sets_ans(const Entry& entry);
-    [[nodiscard]] std::string script() const;
-    [[nodiscard]] bool ans_is_used_after(std::size_t entry) const;
+    std::string script() const;
+    bool ans_is_used_after(std::size_t entry) const;
 
     std::vector<Entry> entries_;
     std::vector<std::string> written_;  // files of this session, which may be overwritten

@@ -330,7 +330,7 @@ constexpr double accuracy = 1.5e-8;  // fraction of the range: closer to the min
 struct Range {
     std::string name;
     double low = 0, high = 0;
-    [[nodiscard]] double at(double part) const { return low + (high - low) * part; }
+    double at(double part) const { return low + (high - low) * part; }
 };
 
 /// A place as fractions of the ranges, and its value.

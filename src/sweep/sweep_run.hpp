@@ -159,31 +159,31 @@ public:
     }
     void fail(std::size_t point, std::string message);
 
-    [[nodiscard]] std::size_t size() const { return done_.size(); }
-    [[nodiscard]] bool is_done(std::size_t point) const { return done_[point] != 0; }
-    [[nodiscard]] std::size_t chunk_size() const { return chunk_size_; }
-    [[nodiscard]] std::size_t chunks() const { return done_in_chunk_.size(); }
+    std::size_t size() const { return done_.size(); }
+    bool is_done(std::size_t point) const { return done_[point] != 0; }
+    std::size_t chunk_size() const { return chunk_size_; }
+    std::size_t chunks() const { return done_in_chunk_.size(); }
     /// May be called while others work: once true, the results of the chunk are final.
-    [[nodiscard]] bool is_complete(std::size_t chunk) const {
+    bool is_complete(std::size_t chunk) const {
         const std::size_t first = chunk * chunk_size_;
         return done_in_chunk_[chunk].load(std::memory_order_acquire) == std::min(chunk_size_, size() - first);
     }
     /// The results of these finished points by name, followed by the column `error`, which is empty for points without
     /// an error. May be called while others work.
-    [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
+    std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
 
     // The following are for a single thread, while no other changes anything.
 
-    [[nodiscard]] const std::map<std::size_t, std::string>& failures() const { return failures_; }
-    [[nodiscard]] std::size_t done() const;
+    const std::map<std::size_t, std::string>& failures() const { return failures_; }
+    std::size_t done() const;
     /// The column of this name, or nullptr.
-    [[nodiscard]] const double* find(std::string_view name) const;
+    const double* find(std::string_view name) const;
     /// The finished points in order.
-    [[nodiscard]] std::vector<std::size_t> done_points() const;
+    std::vector<std::size_t> done_points() const;
 
 private:
     /// The words encoded in these numbers of a column; none if there are no words.
-    [[nodiscard]] std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
+    std::optional<std::vector<std::string>> words(const std::vector<double>& numbers) const;
 
     std::size_t chunk_size_;
     mutable std::mutex changing_;  // guards the columns, failures and words, but not the numbers
@@ -248,7 +248,7 @@ public:
     /// Loads finished points, or the complete file. Fails if it belongs to another sweep, is in use by another process,
     /// or cannot be written.
     std::optional<text::Error> open();
-    [[nodiscard]] const std::optional<std::vector<DataColumn>>& result() const { return result_; }
+    const std::optional<std::vector<DataColumn>>& result() const { return result_; }
 
     /// Appends chunks completed since the last call, also while others work. `incomplete`: also appends partial ones.
     std::optional<text::Error> write(bool incomplete);
@@ -257,10 +257,10 @@ public:
     /// Removes a journal without useful points.
     void discard() const;
 
-    [[nodiscard]] const std::string& path() const { return path_; }
+    const std::string& path() const { return path_; }
 
 private:
-    [[nodiscard]] text::Error refused(const std::string& path, std::string_view why) const;
+    text::Error refused(const std::string& path, std::string_view why) const;
     std::optional<text::Error> take_points();
     std::optional<text::Error> take_result();
     std::optional<text::Error> append(std::string_view text);

@@ -39,7 +39,7 @@ public:
     }
 
     /// Returns '\0' at the end of the input or after a signal.
-    [[nodiscard]] char read() const {
+    char read() const {
         char key = '\0';
         return good_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
     }

@@ -66,7 +66,7 @@ public:
         }
         text_[n] = '\0';
     }
-    [[nodiscard]] constexpr const char* c_str() const { return text_; }
+    constexpr const char* c_str() const { return text_; }
 
 private:
     char text_[room] = {};

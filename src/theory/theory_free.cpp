@@ -190,9 +190,9 @@ public:
         step_ = turned({1, 0}, spacing_);
     }
 
-    [[nodiscard]] bool done() const { return next_ >= times_.size(); }
+    bool done() const { return next_ >= times_.size(); }
     /// The time of the next row relative to the first.
-    [[nodiscard]] double next_time() const { return times_[next_] - times_[0]; }
+    double next_time() const { return times_[next_] - times_[0]; }
 
     /// Computes the rows before `until` as a swing about `centre` from this state at the time `from`.
     void swing(double centre, double from, const model::State& start, double until) {
@@ -218,7 +218,7 @@ public:
 
 private:
     void put(double theta) { theta_[next_++] = theta; }
-    [[nodiscard]] std::complex<double> turned(std::complex<double> z, double tau) const {
+    std::complex<double> turned(std::complex<double> z, double tau) const {
         const double kept = std::exp(-decay_ * tau), c = kept * std::cos(omega_ * tau),
                      s = kept * std::sin(omega_ * tau);
         return {z.real() * c - z.imag() * s, z.real() * s + z.imag() * c};

@@ -15,23 +15,23 @@ class Modes {
 public:
     explicit Modes(double zeta);
 
-    [[nodiscard]] double zeta() const { return zeta_; }
-    [[nodiscard]] bool swings() const { return zeta_ < 1; }
+    double zeta() const { return zeta_; }
+    bool swings() const { return zeta_ < 1; }
     /// q, or k when overdamped.
-    [[nodiscard]] double rate() const { return rate_; }
+    double rate() const { return rate_; }
     /// The decay rates of an overdamped motion: 1/(zeta + k), and zeta + k.
-    [[nodiscard]] double slow_root() const { return 1 / fast_root(); }
-    [[nodiscard]] double fast_root() const { return swings() ? 1 : zeta_ + rate_; }
+    double slow_root() const { return 1 / fast_root(); }
+    double fast_root() const { return swings() ? 1 : zeta_ + rate_; }
 
     /// e^(-zeta x) cos qx.
-    [[nodiscard]] double damped_cosine(double x) const;
+    double damped_cosine(double x) const;
     /// y(0) = 0, y'(0) = 1: e^(-zeta x) (sin qx)/q.
-    [[nodiscard]] double pushed(double x) const;
+    double pushed(double x) const;
     struct Answers {
         double released;                 ///< y(0) = 1, y'(0) = 0; its velocity is -pushed
         double pushed, pushed_velocity;  ///< y(0) = 0, y'(0) = 1
     };
-    [[nodiscard]] Answers after(double x) const;
+    Answers after(double x) const;
 
 private:
     double zeta_;
@@ -58,13 +58,13 @@ public:
     /// Requires 0 <= zeta < 1 and x_f >= 0.
     HalfCycles(double zeta, double friction_shift);
     /// The extreme n half cycles after X, provided that the mass does not come to rest before.
-    [[nodiscard]] double after(double n, double X) const;
+    double after(double n, double X) const;
     /// The number of half cycles after X until first |angle| <= dead_zone, which is at least x_f; infinity if never.
     /// Slightly off near 2^53.
-    [[nodiscard]] double until_within(double dead_zone, double X) const;
+    double until_within(double dead_zone, double X) const;
 
 private:
-    [[nodiscard]] double shrunk(double n, double size) const;
+    double shrunk(double n, double size) const;
 
     double logarithm_;  // -ln e
     double shift_;
@@ -83,22 +83,22 @@ public:
     FreeMotion(const model::Oscillator& system, const model::State& initial);
 
     /// Requires t >= 0.
-    [[nodiscard]] model::State at(double t) const;
+    model::State at(double t) const;
     /// The time at which it stops for good; infinity if it only approaches a place, or never settles.
-    [[nodiscard]] double time_to_rest() const;
+    double time_to_rest() const;
     /// The place where it stops or which it approaches; none if it swings for ever.
-    [[nodiscard]] std::optional<double> rest_position() const;
+    std::optional<double> rest_position() const;
     /// The number of zeros of the velocity until it rests, including the start if at rest.
-    [[nodiscard]] double extremes() const;
+    double extremes() const;
     /// Requires 0 <= n < extremes().
-    [[nodiscard]] Extreme extreme(double n) const;
+    Extreme extreme(double n) const;
 
 private:
-    [[nodiscard]] double half_cycles_to_rest() const;
-    [[nodiscard]] bool stays(double theta) const;
-    [[nodiscard]] double first_zero(double side) const;
-    [[nodiscard]] model::State arc(double side, const model::State& start, double t) const;
-    [[nodiscard]] double half_cycle() const;
+    double half_cycles_to_rest() const;
+    bool stays(double theta) const;
+    double first_zero(double side) const;
+    model::State arc(double side, const model::State& start, double t) const;
+    double half_cycle() const;
 
     model::Oscillator system_;
     model::State initial_;

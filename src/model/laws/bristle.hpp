@@ -20,22 +20,18 @@ struct Bristle final : BendingLaw {
     bool dahl = false;
 
     static constexpr bool depends_on_speed = true;
-    [[nodiscard]] double greatest() const { return breakaway.value_or(kinetic); }
+    double greatest() const { return breakaway.value_or(kinetic); }
     /// The torque of steady slip without its viscous part.
-    [[nodiscard]] double steady(double v) const {
+    double steady(double v) const {
         const double x = v / speed;
         return kinetic + (greatest() - kinetic) * std::exp(-x * x);
     }
-    [[nodiscard]] double bend_rate(double v, double z) const override {
-        return v - stiffness * std::fabs(v) * z / steady(v);
-    }
-    [[nodiscard]] double torque(double v, double z) const override {
-        return stiffness * z + damping * bend_rate(v, z) + viscous * v;
-    }
-    [[nodiscard]] double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }
-    [[nodiscard]] double holding(Motion /*way*/) const { return greatest(); }
+    double bend_rate(double v, double z) const override { return v - stiffness * std::fabs(v) * z / steady(v); }
+    double torque(double v, double z) const override { return stiffness * z + damping * bend_rate(v, z) + viscous * v; }
+    double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }
+    double holding(Motion /*way*/) const { return greatest(); }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, greatest()); }
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 };
 
 inline constexpr text::Option dahl_options[] = {
@@ -71,10 +67,10 @@ struct Jenkins {
     double stiffness = 0, kinetic = 0;
 
     static constexpr bool depends_on_speed = false;
-    [[nodiscard]] double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
-    [[nodiscard]] double holding(Motion /*way*/) const { return kinetic; }
+    double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
+    double holding(Motion /*way*/) const { return kinetic; }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, kinetic); }
-    [[nodiscard]] std::string lua_text() const {
+    std::string lua_text() const {
         return fmt::format("friction.jenkins{{ stiffness = {}, Rd = {} }}", stiffness, kinetic);
     }
 };

@@ -15,8 +15,8 @@ struct Coulomb {
     double breakaway = 0;  ///< Re >= Rd
 
     static constexpr bool depends_on_speed = false;
-    [[nodiscard]] double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
-    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
+    double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
+    double holding(Motion /*way*/) const { return breakaway; }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, breakaway); }
 };
 
@@ -25,7 +25,7 @@ struct CoulombTorques {
     double Rd = 0;
     std::optional<double> Re = {};
 
-    [[nodiscard]] Coulomb law() const { return {Rd, Re.value_or(Rd)}; }
+    Coulomb law() const { return {Rd, Re.value_or(Rd)}; }
 };
 inline constexpr text::Option coulomb_options[] = {
     {"Rd", "torque", text::needed, text::not_negative, "dry friction while sliding", text::fills<&CoulombTorques::Rd>},
@@ -38,14 +38,14 @@ struct AsymmetricCoulomb {
     Coulomb forward, backward;
 
     static constexpr bool depends_on_speed = false;
-    [[nodiscard]] const Coulomb& of(Motion way) const { return way == Motion::backward ? backward : forward; }
-    [[nodiscard]] double sliding(Motion way, double /*speed*/) const { return of(way).kinetic; }
-    [[nodiscard]] double holding(Motion way) const { return of(way).breakaway; }
+    const Coulomb& of(Motion way) const { return way == Motion::backward ? backward : forward; }
+    double sliding(Motion way, double /*speed*/) const { return of(way).kinetic; }
+    double holding(Motion way) const { return of(way).breakaway; }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         if (auto wrong = wrong_torques("forward.", forward.kinetic, forward.breakaway)) return wrong;
         return wrong_torques("backward.", backward.kinetic, backward.breakaway);
     }
-    [[nodiscard]] std::string lua_text() const {
+    std::string lua_text() const {
         return fmt::format(
             "friction.asymmetric{{ forward = {{ Rd = {}, Re = {} }}, backward = {{ Rd = {}, Re = {} }} }}",
             forward.kinetic, forward.breakaway, backward.kinetic, backward.breakaway);
@@ -73,12 +73,12 @@ struct Freewheel {
     double kinetic = 0;  ///< Rd, also the breakaway torque forward
 
     static constexpr bool depends_on_speed = false;
-    [[nodiscard]] double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
-    [[nodiscard]] double holding(Motion way) const {
+    double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
+    double holding(Motion way) const {
         return way == Motion::backward ? std::numeric_limits<double>::infinity() : kinetic;
     }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, kinetic); }
-    [[nodiscard]] std::string lua_text() const { return fmt::format("friction.freewheel{{ Rd = {} }}", kinetic); }
+    std::string lua_text() const { return fmt::format("friction.freewheel{{ Rd = {} }}", kinetic); }
 };
 
 inline constexpr text::Option freewheel_options[] = {
@@ -95,19 +95,17 @@ struct Sum {
 
     static constexpr bool depends_on_speed = speed;
     [[nodiscard]] static std::size_t side(Motion way) { return way == Motion::forward ? 1 : 0; }
-    [[nodiscard]] double sliding(Motion way, double at) const {
-        return main.sliding(way, at) + more_sliding[side(way)];
-    }
-    [[nodiscard]] double holding(Motion way) const { return main.holding(way) + more_holding[side(way)]; }
+    double sliding(Motion way, double at) const { return main.sliding(way, at) + more_sliding[side(way)]; }
+    double holding(Motion way) const { return main.holding(way) + more_holding[side(way)]; }
     [[nodiscard]] std::optional<text::Error> complaint() const { return main.complaint(); }
-    [[nodiscard]] std::size_t ranges() const { return more_sliding[0] == more_sliding[1] ? main.ranges() : 0; }
-    [[nodiscard]] SpeedRange range(std::size_t i) const {
+    std::size_t ranges() const { return more_sliding[0] == more_sliding[1] ? main.ranges() : 0; }
+    SpeedRange range(std::size_t i) const {
         SpeedRange range = main.range(i);
         range.torque += more_sliding[0];
         return range;
     }
-    [[nodiscard]] double slope(double at) const { return main.slope(at); }
-    [[nodiscard]] double scale(double at) const { return main.scale(at); }
+    double slope(double at) const { return main.slope(at); }
+    double scale(double at) const { return main.scale(at); }
 };
 
 }  // namespace dinal::model::laws

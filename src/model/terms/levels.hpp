@@ -10,16 +10,16 @@ struct Constant {
 
     double amplitude = 0;
 
-    [[nodiscard]] double value(double, double = 0) const { return amplitude; }
-    [[nodiscard]] double next_break(double) const { return never; }
-    [[nodiscard]] double constant_from() const { return -never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    double value(double, double = 0) const { return amplitude; }
+    double next_break(double) const { return never; }
+    double constant_from() const { return -never; }
+    double most() const { return std::fabs(amplitude); }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {
         sum.add_constant(amplitude);
     }
     void delay_by(double) {}
-    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude); }
+    std::string formula(double gain) const { return number(gain * amplitude); }
 };
 
 inline constexpr text::Option constant_options[] = {
@@ -36,15 +36,15 @@ struct Step {
 
     double amplitude = 1, at = 0;
 
-    [[nodiscard]] double value(double t, double = 0) const { return t < at ? 0 : amplitude; }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
-    [[nodiscard]] double constant_from() const { return at; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    double value(double t, double = 0) const { return t < at ? 0 : amplitude; }
+    double next_break(double t) const { return first_after(t, {at}); }
+    double constant_from() const { return at; }
+    double most() const { return std::fabs(amplitude); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at) sum.add_constant(amplitude);
     }
-    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude) + from_on(at); }
+    std::string formula(double gain) const { return number(gain * amplitude) + from_on(at); }
 };
 
 inline constexpr text::Option step_options[] = {
@@ -65,15 +65,15 @@ struct Pulse {
 
     double amplitude = 1, at = 0, width = 0;
 
-    [[nodiscard]] double value(double t, double = 0) const { return t >= at && t < at + width ? amplitude : 0; }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
-    [[nodiscard]] double constant_from() const { return at + width; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    double value(double t, double = 0) const { return t >= at && t < at + width ? amplitude : 0; }
+    double next_break(double t) const { return first_after(t, {at, at + width}); }
+    double constant_from() const { return at + width; }
+    double most() const { return std::fabs(amplitude); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at && inside < at + width) sum.add_constant(amplitude);
     }
-    [[nodiscard]] std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
+    std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
 };
 
 inline constexpr text::Option pulse_options[] = {
@@ -93,15 +93,15 @@ struct Ramp {
 
     double slope = 1, at = 0, duration = never;
 
-    [[nodiscard]] double value(double t, double rest = 0) const {
+    double value(double t, double rest = 0) const {
         if (t < at) {
             return 0;
         }
         return slope * (t < at + duration ? (t - at) + rest : duration);
     }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + duration}); }
-    [[nodiscard]] double constant_from() const { return at + duration; }
-    [[nodiscard]] double most() const { return slope == 0 ? 0 : std::fabs(slope * duration); }
+    double next_break(double t) const { return first_after(t, {at, at + duration}); }
+    double constant_from() const { return at + duration; }
+    double most() const { return slope == 0 ? 0 : std::fabs(slope * duration); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at + duration) {
@@ -110,7 +110,7 @@ struct Ramp {
             sum.add_line(at, 0, slope);
         }
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         const std::string rise = factor(gain * slope) + since(at);
         return duration == never ? rise + from_on(at)
                                  : rise + between(at, at + duration) + ", then " + number(gain * slope * duration);

@@ -21,7 +21,7 @@ class Memory : text::NotCopied {
 public:
     virtual ~Memory() = default;
     /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
-    [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
+    virtual std::shared_ptr<Memory> copy() const = 0;
 };
 
 /// The decisions that a formula's conditions on the motion have taken; while they hold it is smooth. Bit masks stand
@@ -107,12 +107,12 @@ struct Scripted {
     double delay = 0;
     std::shared_ptr<UserFunction> original = {};  ///< knows the breaks if `function` is a replacement
 
-    [[nodiscard]] double next_break(double t) const {
+    double next_break(double t) const {
         const double own = (original != nullptr ? original : function)->next_break(t - delay);
         const double announced = next_announced_break(t);
         return own == never ? announced : std::min(announced, later(t, own + delay));
     }
-    [[nodiscard]] double next_announced_break(double t) const {
+    double next_announced_break(double t) const {
         if (breaks.empty()) {
             return never;
         }
@@ -132,9 +132,9 @@ struct Scripted {
         }
         return std::nextafter(t, never);
     }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return never; }
-    [[nodiscard]] double repeats_after() const { return period; }
+    double constant_from() const { return never; }
+    double most() const { return never; }
+    double repeats_after() const { return period; }
     void delay_by(double d) { delay += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const;
     /// Removes a break listed twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.

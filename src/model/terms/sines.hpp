@@ -22,18 +22,18 @@ struct Harmonic {
 
     double amplitude = 1, omega = 0, phase = 0, at = 0;
 
-    [[nodiscard]] double angle(double t) const { return omega * (t - at) + phase; }
-    [[nodiscard]] double value(double t) const { return amplitude * std::sin(angle(t)); }
-    [[nodiscard]] double next_break(double) const { return never; }
-    [[nodiscard]] double constant_from() const { return omega == 0 ? -never : never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return omega == 0 ? 0 : two_pi / std::fabs(omega); }
+    double angle(double t) const { return omega * (t - at) + phase; }
+    double value(double t) const { return amplitude * std::sin(angle(t)); }
+    double next_break(double) const { return never; }
+    double constant_from() const { return omega == 0 ? -never : never; }
+    double most() const { return std::fabs(amplitude); }
+    double repeats_after() const { return omega == 0 ? 0 : two_pi / std::fabs(omega); }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {
         sum.add_sine(amplitude, omega, at, phase);
     }
     void delay_by(double d) { phase -= omega * d; }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         const std::string shift = phase == 0 ? "" : (phase < 0 ? " - " : " + ") + number(std::fabs(phase));
         return factor(gain * amplitude) + "sin(" + number(omega) + " " + since(at) + shift + ")";
     }
@@ -78,20 +78,20 @@ struct HalfSine {
 
     double amplitude = 1, at = 0, width = 0;
 
-    [[nodiscard]] double value(double t, double rest = 0) const {
+    double value(double t, double rest = 0) const {
         if (t < at || t >= at + width) {
             return 0;
         }
         return amplitude * std::sin(std::numbers::pi * (((t - at) + rest) / width));
     }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + width}); }
-    [[nodiscard]] double constant_from() const { return at + width; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
+    double next_break(double t) const { return first_after(t, {at, at + width}); }
+    double constant_from() const { return at + width; }
+    double most() const { return std::fabs(amplitude); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at && inside < at + width) sum.add_sine(amplitude, std::numbers::pi / width, at, 0);
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         return factor(gain * amplitude) + "sin(pi " + since(at) + "/" + number(width) + ")" + between(at, at + width);
     }
 };
@@ -114,7 +114,7 @@ struct Chirp {
     double amplitude = 1, from = 0, to = 0, duration = 0, at = 0, phase = 0;
 
     /// The phase is the integral of the frequency; it and its slope are continuous.
-    [[nodiscard]] double value(double t) const {
+    double value(double t) const {
         const double tau = t - at;
         double cycles = 0;
         if (t < at) {
@@ -126,10 +126,10 @@ struct Chirp {
         }
         return amplitude * std::sin(two_pi * cycles + phase);
     }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at, at + duration}); }
-    [[nodiscard]] double constant_from() const { return to > 0 ? never : from > 0 ? at + duration : -never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] std::string formula(double gain) const {
+    double next_break(double t) const { return first_after(t, {at, at + duration}); }
+    double constant_from() const { return to > 0 ? never : from > 0 ? at + duration : -never; }
+    double most() const { return std::fabs(amplitude); }
+    std::string formula(double gain) const {
         return factor(gain * amplitude) + "sine of frequency " + number(from) + " ... " + number(to) +
                between(at, at + duration);
     }

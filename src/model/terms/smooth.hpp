@@ -16,7 +16,7 @@ struct Polynomial {
     double at = 0;
 
     /// Horner's scheme in t - at.
-    [[nodiscard]] double value(double t) const {
+    double value(double t) const {
         const double x = t - at;
         double sum = 0;
         for (auto c = coefficients.rbegin(); c != coefficients.rend(); ++c) {
@@ -24,13 +24,13 @@ struct Polynomial {
         }
         return sum;
     }
-    [[nodiscard]] double next_break(double) const { return never; }
-    [[nodiscard]] double constant_from() const {
+    double next_break(double) const { return never; }
+    double constant_from() const {
         const auto varies = [](double c) { return c != 0; };
         return coefficients.size() < 2 || std::none_of(coefficients.begin() + 1, coefficients.end(), varies) ? -never
                                                                                                              : never;
     }
-    [[nodiscard]] double most() const { return coefficients.size() < 2 ? std::fabs(value(0)) : never; }
+    double most() const { return coefficients.size() < 2 ? std::fabs(value(0)) : never; }
     template <class Sum>
     void closed_form(double /*inside*/, Sum& sum) const {
         sum.add_powers(at, coefficients);
@@ -40,7 +40,7 @@ struct Polynomial {
         return text::Error{.sentence = "coefficients is empty; give at least one, as in coefficients = { 1, 0.5 }",
                            .option = "coefficients"};
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         std::string text;
         for (std::size_t i = 0; i < coefficients.size(); ++i) {
             const double c = gain * coefficients[i];
@@ -70,9 +70,7 @@ struct Exponential {
 
     double amplitude = 1, tau = 0, at = 0;
 
-    [[nodiscard]] double value(double t, double rest = 0) const {
-        return t < at ? 0 : grown(amplitude, -((t - at) + rest) / tau);
-    }
+    double value(double t, double rest = 0) const { return t < at ? 0 : grown(amplitude, -((t - at) + rest) / tau); }
     /// Returns amplitude exp(x), also if exp(x) alone overflows.
     static double grown(double amplitude, double x) {
         constexpr double most = 700;
@@ -80,14 +78,14 @@ struct Exponential {
         const double half = std::exp(x / 2);
         return amplitude * half * half;
     }
-    [[nodiscard]] double next_break(double t) const { return first_after(t, {at}); }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }
+    double next_break(double t) const { return first_after(t, {at}); }
+    double constant_from() const { return never; }
+    double most() const { return amplitude == 0 ? 0 : tau > 0 ? std::fabs(amplitude) : never; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at) sum.add_exponential(amplitude, -1 / tau, at);
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         return factor(gain * amplitude) + "exp(-" + since(at) + "/" + number(tau) + ")" + from_on(at);
     }
 };
@@ -108,21 +106,21 @@ struct Gaussian {
 
     double amplitude = 1, at = 0, sigma = 0;
 
-    [[nodiscard]] double value(double t, double rest = 0) const {
+    double value(double t, double rest = 0) const {
         const double x = ((t - at) + rest) / sigma;
         return amplitude * std::exp(-0.5 * x * x);
     }
-    [[nodiscard]] double next_break(double) const { return never; }
-    [[nodiscard]] double constant_from() const {
+    double next_break(double) const { return never; }
+    double constant_from() const {
         constexpr double vanished = 39;  // exp(-39^2 / 2) is below the smallest double
         return std::nextafter(at + vanished * sigma, never);
     }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] Detail detail() const {
+    double most() const { return std::fabs(amplitude); }
+    Detail detail() const {
         constexpr double visible = 10;  // exp(-10^2 / 2) = 2e-22 is lost in rounding
         return {at - visible * sigma, at + visible * sigma, sigma / 2};
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         return factor(gain * amplitude) + "exp(-(" + since(at) + "/" + number(sigma) + ")^2/2)";
     }
 };

@@ -14,24 +14,24 @@ struct Square {
     struct Cycle {
         double fall, end;
     };
-    [[nodiscard]] Cycle cycle(double t) const {
+    Cycle cycle(double t) const {
         const auto edge = [this](double n) { return at + n * period; };
         const double n = cycle_at(t, (t - at) / period, edge);
         return {edge(n + duty), edge(n + 1)};
     }
-    [[nodiscard]] double value(double t, double = 0) const { return t < cycle(t).fall ? amplitude : -amplitude; }
-    [[nodiscard]] double next_break(double t) const {
+    double value(double t, double = 0) const { return t < cycle(t).fall ? amplitude : -amplitude; }
+    double next_break(double t) const {
         const Cycle c = cycle(t);
         return later(t, c.fall > t ? c.fall : c.end);
     }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return period; }
+    double constant_from() const { return never; }
+    double most() const { return std::fabs(amplitude); }
+    double repeats_after() const { return period; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         sum.add_constant(value(inside));
     }
-    [[nodiscard]] std::string formula(double gain) const {
+    std::string formula(double gain) const {
         return wave("square wave", gain * amplitude, period, at) +
                (duty == 0.5 ? "" : ", positive for " + number(duty) + " of it");
     }
@@ -60,25 +60,25 @@ struct Sawtooth {
     struct Cycle {
         double start, end;
     };
-    [[nodiscard]] Cycle cycle(double t) const {
+    Cycle cycle(double t) const {
         const auto edge = [this](double n) { return at + n * period; };
         const double n = cycle_at(t, (t - at) / period, edge);
         return {edge(n), edge(n + 1)};
     }
-    [[nodiscard]] double value(double t) const {
+    double value(double t) const {
         const Cycle c = cycle(t);
         return -amplitude + 2 * amplitude * fraction(t, c.start, c.end);
     }
-    [[nodiscard]] double next_break(double t) const { return later(t, cycle(t).end); }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return period; }
+    double next_break(double t) const { return later(t, cycle(t).end); }
+    double constant_from() const { return never; }
+    double most() const { return std::fabs(amplitude); }
+    double repeats_after() const { return period; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Cycle c = cycle(inside);
         sum.add_line(c.start, -amplitude, c.end > c.start ? 2 * amplitude / (c.end - c.start) : 0);
     }
-    [[nodiscard]] std::string formula(double gain) const { return wave("sawtooth", gain * amplitude, period, at); }
+    std::string formula(double gain) const { return wave("sawtooth", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option sawtooth_options[] = {
@@ -104,27 +104,27 @@ struct Triangle {
         double start, end;
         bool falling;
     };
-    [[nodiscard]] Side side(double t) const {
+    Side side(double t) const {
         const auto corner = [this](double n) { return at + (0.5 * n + 0.25) * period; };
         const double n = cycle_at(t, 2 * ((t - at) / period) - 0.5, corner);
         return {corner(n), corner(n + 1), std::fmod(n, 2) == 0};
     }
-    [[nodiscard]] double value(double t) const {
+    double value(double t) const {
         const Side piece = side(t);
         const double first = piece.falling ? amplitude : -amplitude;
         return first - 2 * first * fraction(t, piece.start, piece.end);
     }
-    [[nodiscard]] double next_break(double t) const { return later(t, side(t).end); }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return std::fabs(amplitude); }
-    [[nodiscard]] double repeats_after() const { return period; }
+    double next_break(double t) const { return later(t, side(t).end); }
+    double constant_from() const { return never; }
+    double most() const { return std::fabs(amplitude); }
+    double repeats_after() const { return period; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Side piece = side(inside);
         const double first = piece.falling ? amplitude : -amplitude;
         sum.add_line(piece.start, first, piece.end > piece.start ? -2 * first / (piece.end - piece.start) : 0);
     }
-    [[nodiscard]] std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
+    std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option triangle_options[] = {

@@ -63,7 +63,7 @@ public:
         }
     }
 
-    [[nodiscard]] Loop start(const model::State& initial) const {
+    Loop start(const model::State& initial) const {
         Loop p{.U = initial.theta, .V = T0 * initial.velocity};
         p.Z = F(p.T, p.U, p.V);
         return p;
@@ -84,7 +84,7 @@ public:
     }
 
     /// One pass of the loop DO 80, with sample i of the block.
-    [[nodiscard]] Loop step(const Loop& p, std::size_t i) const {
+    Loop step(const Loop& p, std::size_t i) const {
         if (feedback_) return judged(p, feedback_increment(p), 0);
         return judged(p,
                       linear_ ? sum(*linear_, p.U, p.V, p.Z, Z_[2 * i], Z_[2 * i + 1])
@@ -131,15 +131,13 @@ public:
     }
 
     /// theta and velocity, in the user's units.
-    [[nodiscard]] model::State state(const Loop& p) const { return {p.U, p.V / T0}; }
-    [[nodiscard]] double M(const Loop& p) const { return system_.stiffness() * (p.Z / C); }
+    model::State state(const Loop& p) const { return {p.U, p.V / T0}; }
+    double M(const Loop& p) const { return system_.stiffness() * (p.Z / C); }
     /// -Rd sgn(V), as printed, also while frozen.
-    [[nodiscard]] double friction(const Loop& p) const { return 0.0 - system_.kinetic_friction() * SG(p.V); }
-    [[nodiscard]] double time(const Loop& p) const { return t_start_ + p.T * T0; }
-    [[nodiscard]] double acceleration(const Loop& p) const {
-        return (p.Z - A * p.V - B * SG(p.V) - C * p.U) / (T0 * T0);
-    }
-    [[nodiscard]] const model::Excitation& excitation() const { return excitation_; }
+    double friction(const Loop& p) const { return 0.0 - system_.kinetic_friction() * SG(p.V); }
+    double time(const Loop& p) const { return t_start_ + p.T * T0; }
+    double acceleration(const Loop& p) const { return (p.Z - A * p.V - B * SG(p.V) - C * p.U) / (T0 * T0); }
+    const model::Excitation& excitation() const { return excitation_; }
 
 private:
     struct Change {
@@ -150,20 +148,18 @@ private:
         Change U, V, Z, Zm;
     };
 
-    [[nodiscard]] double F(double T, double U, double V) const {
+    double F(double T, double U, double V) const {
         return C * (excitation_.value(t_start_ + T * T0, model::State{U, V / T0}) / system_.stiffness());
     }
 
     /// B SG(Y)
-    [[nodiscard]] double dry_friction_term(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
+    double dry_friction_term(double Y) const { return Y == 0 ? 0 : std::copysign(B, Y); }
     // NOTE: the sum is grouped so as to shorten the chain of dependent operations.
-    [[nodiscard]] double Q2(double X, double Y, double Z) const {
-        return K * ((Z - C * X) - (dry_friction_term(Y) + A * Y));
-    }
+    double Q2(double X, double Y, double Z) const { return K * ((Z - C * X) - (dry_friction_term(Y) + A * Y)); }
 
     /// The four stages; `f(stage, X, Y)` returns F.
     template <class Force>
-    [[nodiscard]] Change stages(double U, double V, Force&& f) const {
+    Change stages(double U, double V, Force&& f) const {
         const double Q11 = K * V, Q21 = Q2(U, V, f(1, U, V));
         double X = U + Q11 / 2, Y = V + Q21 / 2;
         const double Q12 = K * Y, Q22 = Q2(X, Y, f(2, X, Y));
@@ -173,27 +169,27 @@ private:
         const double Q14 = K * Y, Q24 = Q2(X, Y, f(4, X, Y));
         return {(Q11 + 2 * Q12 + 2 * Q13 + Q14) / 6, (Q21 + 2 * Q22 + 2 * Q23 + Q24) / 6};
     }
-    [[nodiscard]] Change increment(double U, double V, double Z, double Zm, double Z1) const {
+    Change increment(double U, double V, double Z, double Zm, double Z1) const {
         return stages(U, V, [=](int stage, double, double) { return stage == 1 ? Z : stage == 4 ? Z1 : Zm; });
     }
-    [[nodiscard]] Change feedback_increment(const Loop& p) const {
+    Change feedback_increment(const Loop& p) const {
         return stages(p.U, p.V, [&](int stage, double X, double Y) {
             return stage == 1 ? p.Z : F(p.T + (stage == 4 ? K : K / 2), X, Y);
         });
     }
-    [[nodiscard]] Change sum(const Linear& m, double U, double V, double Z, double Zm, double Z1) const {
+    Change sum(const Linear& m, double U, double V, double Z, double Zm, double Z1) const {
         return {m.U.U * U + m.V.U * V + (m.Z.U * Z + m.Zm.U * Zm),
                 m.U.V * U + m.V.V * V + (m.Z.V * Z + m.Zm.V * Zm + K / 6 * Z1)};
     }
 
     /// The stop rule, after a step from V to V1.
-    [[nodiscard]] bool stops(double V, double V1, double U1, double Z1) const {
+    bool stops(double V, double V1, double U1, double Z1) const {
         const double change = std::fabs(V - V1);
         const bool slow =
             options_.stop == Dinal1989::Stop::listing ? std::fabs(V1) <= change : std::fabs(V1) < change / 2;
         return slow && std::fabs(Z1 - C * U1) <= limit_;
     }
-    [[nodiscard]] Loop judged(const Loop& p, const Change& d, double Z1) const {
+    Loop judged(const Loop& p, const Change& d, double Z1) const {
         Loop next{p.step + 1, p.U + d.U, p.V + d.V, p.T + K, Z1, false};
         if (feedback_) next.Z = F(next.T, next.U, next.V);
         if (stops(p.V, next.V, next.U, next.Z)) {
@@ -282,7 +278,7 @@ public:
           options_(options),
           t_start_(problem.window.start) {}
 
-    [[nodiscard]] text::Expected<model::State> at(double t) const override {
+    text::Expected<model::State> at(double t) const override {
         Dinal dinal(system(), excitation_, options_, t_start_);
         const auto step = static_cast<std::size_t>(std::max((t - t_start_) / options_.h - 1, 0.0));
         Loop a = checkpoints.before(step);

@@ -37,8 +37,8 @@ struct AffineStep {
         q1 = h / 6;
     }
     /// The contributions of the forcing to theta and to the velocity.
-    [[nodiscard]] double push_theta(double f0, double fm) const { return p0 * f0 + pm * fm; }
-    [[nodiscard]] double push_velocity(double f0, double fm, double f1) const { return q0 * f0 + qm * fm + q1 * f1; }
+    double push_theta(double f0, double fm) const { return p0 * f0 + pm * fm; }
+    double push_velocity(double f0, double fm, double f1) const { return q0 * f0 + qm * fm + q1 * f1; }
     // NOTE: this order makes the dependency from step to step one product and two sums long.
     [[nodiscard]] model::State operator()(const model::State& y, double push_theta, double push_velocity) const {
         return {(y.theta + push_theta) + (r11 * y.theta + r12 * y.velocity),
@@ -62,11 +62,9 @@ struct StepTimes {
     double h;
     std::size_t count;  ///< the last step may be shorter
 
-    [[nodiscard]] double time(std::size_t n) const {
-        return n == count ? window.end : window.start + static_cast<double>(n) * h;
-    }
+    double time(std::size_t n) const { return n == count ? window.end : window.start + static_cast<double>(n) * h; }
     /// Returns the index of the step that contains t or begins at t.
-    [[nodiscard]] std::size_t at(double t) const;
+    std::size_t at(double t) const;
 };
 
 /// Tests for successive steps whether friction holds a mass at rest.
@@ -104,9 +102,9 @@ struct AffineBlock {
     /// which it changes sign, or approaches zero and recedes, as it may then have crossed zero twice.
     std::size_t step(std::size_t i, std::size_t stop, double direction);
     /// Returns the end of step i, in which the velocity may change sign.
-    [[nodiscard]] model::State end_of(std::size_t i) const { return map(at(i), push_theta[i], push_velocity[i]); }
-    [[nodiscard]] model::State at(std::size_t i) const { return {theta[i], velocity[i]}; }
-    [[nodiscard]] double acceleration(std::size_t i, const model::State& y) const {
+    model::State end_of(std::size_t i) const { return map(at(i), push_theta[i], push_velocity[i]); }
+    model::State at(std::size_t i) const { return {theta[i], velocity[i]}; }
+    double acceleration(std::size_t i, const model::State& y) const {
         return forcing[i] - map.c * y.velocity - map.w * y.theta;
     }
 

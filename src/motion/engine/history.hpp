@@ -24,10 +24,10 @@ class Remade : text::NotCopied {
 public:
     virtual ~Remade() = default;
     /// Angle and velocity at the time since the start.
-    [[nodiscard]] virtual std::vector<double> at(double since_start) const = 0;
+    virtual std::vector<double> at(double since_start) const = 0;
     /// The work as a function of the time since the start. The function must not outlive the stretch.
     [[nodiscard]] virtual std::function<Work(double)> works() const = 0;
-    [[nodiscard]] virtual std::size_t bytes() const = 0;
+    virtual std::size_t bytes() const = 0;
 };
 
 /// The stored data of a stretch, or of its beginning if an event ended it there.
@@ -53,21 +53,21 @@ struct Kept {
     std::vector<Acting> acting{};
     std::shared_ptr<const Remade> remade{};  ///< replaces changes and torques
 
-    [[nodiscard]] double value(std::size_t k, double x) const {
+    double value(std::size_t k, double x) const {
         return x <= -1 ? y[k].begin : y[k].begin + cheb::value(y[k].change, std::min(x, 1.0));
     }
-    [[nodiscard]] double x(double t) const { return start.until(t) / h - 1; }
+    double x(double t) const { return start.until(t) / h - 1; }
 };
 
 /// The energy at the joints over a stretch, or over an instantaneous change.
 class JointLeg {
 public:
     virtual ~JointLeg() = default;
-    [[nodiscard]] virtual double length() const = 0;
-    [[nodiscard]] virtual double since_start(double t) const = 0;
+    virtual double length() const = 0;
+    virtual double since_start(double t) const = 0;
     /// The work at a joint from the start to `since_start`; the work of M and the base on a body counts at its joint
     /// with the ground.
-    [[nodiscard]] virtual Work work(std::size_t joint, double since_start) const = 0;
+    virtual Work work(std::size_t joint, double since_start) const = 0;
 };
 
 class History {
@@ -92,16 +92,16 @@ public:
     void close(const Clock& end, const std::vector<double>& y);
 
     /// All angles, velocities and states at a time of the run.
-    [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }
-    [[nodiscard]] std::vector<double> at(double t, Side side) const;
-    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    std::vector<double> at(double t) const { return at(t, Side::at); }
+    std::vector<double> at(double t, Side side) const;
+    std::size_t bytes() const { return bytes_; }
     /// The time up to which the motion was stored, in earlier runs, too; infinite if all was.
-    [[nodiscard]] double whole_until() const {
+    double whole_until() const {
         return before_ == nullptr ? whole_until_ : std::min(whole_until_, before_->whole_until());
     }
-    [[nodiscard]] bool empty() const { return list_.empty(); }
+    bool empty() const { return list_.empty(); }
     /// The end times of the stored stretches.
-    [[nodiscard]] std::vector<double> ends() const;
+    std::vector<double> ends() const;
     /// Visits all legs in order without gaps. Requires a run that keeps torques.
     void legs(const std::function<void(const JointLeg&)>& visit) const;
     /// The same, including earlier runs if this one began after `start`.
@@ -148,7 +148,7 @@ struct Left {
     std::shared_ptr<const Carry> carry = {};
 
     /// Returns whether the motion between the rows was kept. A run of no duration counts as kept.
-    [[nodiscard]] bool is_dense(const Run& run) const {
+    bool is_dense(const Run& run) const {
         return history != nullptr && (history->bytes() > 0 || run.t_stop == run.t_start);
     }
 };

@@ -106,9 +106,9 @@ public:
         for (const Mechanics::Slider& slider : mechanics_.sliders()) bends_.emplace_back(slider.bend, slider.joint);
     }
 
-    [[nodiscard]] std::size_t bodies() const { return mechanics_.bodies(); }
-    [[nodiscard]] Eigen::Index groups() const { return static_cast<Eigen::Index>(frame_->groups()); }
-    [[nodiscard]] Eigen::Index states() const { return static_cast<Eigen::Index>(free_.size()); }
+    std::size_t bodies() const { return mechanics_.bodies(); }
+    Eigen::Index groups() const { return static_cast<Eigen::Index>(frame_->groups()); }
+    Eigen::Index states() const { return static_cast<Eigen::Index>(free_.size()); }
 
     /// Finds the state in which all accelerations and rates are zero.
     [[nodiscard]] std::optional<text::Error> settle() {
@@ -169,10 +169,10 @@ public:
 
 private:
     [[nodiscard]] static Moment here(std::span<const double> y) { return {0, Side::after, y}; }
-    [[nodiscard]] double slip(std::size_t joint) const {
+    double slip(std::size_t joint) const {
         return given_.system.joints[joint].sum(given_.drive.velocity0) - belts_[joint];
     }
-    [[nodiscard]] double torque_scale() const {
+    double torque_scale() const {
         double most = std::numeric_limits<double>::min();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) most = std::max(most, mechanics_.size_of(j, here(y_)));
         return most;
@@ -185,7 +185,7 @@ private:
             mode_.presses[j] = q > stops->upper ? 1 : q < stops->lower ? -1 : 0;
         }
     }
-    [[nodiscard]] std::vector<double> state_at(const Eigen::VectorXd& x) const {
+    std::vector<double> state_at(const Eigen::VectorXd& x) const {
         std::vector<double> y = y_;
         for (std::size_t i = 0; i < bodies(); ++i) {
             for (const auto& [group, by] : frame_->bodies[i]) {

@@ -224,9 +224,9 @@ public:
             from = stretch_ * static_cast<double>(done_.size() - 1);
         }
     }
-    [[nodiscard]] double length() const override { return kept_.length; }
-    [[nodiscard]] double since_start(double t) const override { return kept_.start.until(t); }
-    [[nodiscard]] Work work(double since_start) const override {
+    double length() const override { return kept_.length; }
+    double since_start(double t) const override { return kept_.start.until(t); }
+    Work work(double since_start) const override {
         if (kept_.rests || !(since_start > 0)) return {};
         const double until = std::min(since_start, kept_.length);
         const auto whole = std::min(static_cast<std::size_t>(until / stretch_), done_.size() - 1);
@@ -236,7 +236,7 @@ public:
     }
 
 private:
-    [[nodiscard]] Work more(Work work, double from, double until) const {
+    Work more(Work work, double from, double until) const {
         const double middle = (from + until) / 2, half = (until - from) / 2;
         double input = 0, squared = 0;
         for (const auto& [place, weight] : gauss) {

@@ -25,11 +25,11 @@ public:
     double begin(const model::ClosedForm& M, const Start& start, double length);
     /// An upper estimate of the cost of a time unit: radians of the fastest part times the number of oscillating parts.
     /// Does not count parts of an overdamped system that decay at once.
-    [[nodiscard]] double cost(const model::ClosedForm& M) const {
+    double cost(const model::ClosedForm& M) const {
         return lasting_rate(M) * static_cast<double>(1 + M.turning_parts());
     }
     /// The longest arc, which limits the accumulated rounding of steps within an arc and of successive arcs.
-    [[nodiscard]] double longest(const model::ClosedForm& M) const;
+    double longest(const model::ClosedForm& M) const;
 
     struct Point {
         double way;  ///< theta minus its initial value
@@ -40,7 +40,7 @@ public:
         return {velocity_.way(), v};
     }
     [[nodiscard]] WalkedCurve& velocity() { return velocity_; }
-    [[nodiscard]] const LinearMotion& free() const { return free_; }
+    const LinearMotion& free() const { return free_; }
 
 private:
     /// The response to exp(i omega tau).
@@ -54,11 +54,9 @@ private:
     bool begin_powers(const model::ClosedForm& M, double still, double length, double& theta, double& velocity);
     bool begin_closed(const model::ClosedForm& M, const Start& start, double length);
     void begin_series(const model::ClosedForm& M, const Start& start, double length, double rate);
-    [[nodiscard]] double fastest_rate(const model::ClosedForm& M) const;
+    double fastest_rate(const model::ClosedForm& M) const;
     /// The fastest rate among the parts that do not decay at once.
-    [[nodiscard]] double lasting_rate(const model::ClosedForm& M) const {
-        return std::max(free_.lasting(), M.fastest());
-    }
+    double lasting_rate(const model::ClosedForm& M) const { return std::max(free_.lasting(), M.fastest()); }
 
     model::Lowered system_;
     LinearMotion free_;
@@ -94,13 +92,13 @@ public:
         if (complete_) arcs_.push_back(arc);
     }
 
-    [[nodiscard]] text::Expected<model::State> at(double t) const override;
-    [[nodiscard]] double whole_until() const override;
+    text::Expected<model::State> at(double t) const override;
+    double whole_until() const override;
     void legs(const std::function<void(const Leg&)>& visit) const override;
-    [[nodiscard]] std::size_t bytes() const override { return arcs_.size() * sizeof(KeptArc); }
+    std::size_t bytes() const override { return arcs_.size() * sizeof(KeptArc); }
 
 private:
-    [[nodiscard]] double end() const { return arcs_.back().start.after(arcs_.back().length); }
+    double end() const { return arcs_.back().start.after(arcs_.back().length); }
 
     model::Excitation excitation_;
     std::size_t most_;

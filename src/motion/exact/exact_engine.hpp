@@ -40,7 +40,7 @@ public:
     };
     /// Returns whether the factors are those of this length. Relative differences up to 1e-9, due to the rounding of
     /// times, are corrected in over().
-    [[nodiscard]] bool is_made_for(double length) const {
+    bool is_made_for(double length) const {
         constexpr double nearly = 1e-9;
         return std::fabs(length - length_) <= nearly * length_;
     }
@@ -52,7 +52,7 @@ public:
         return true;
     }
     /// The values at the end of an interval. Requires takes(length).
-    [[nodiscard]] End over(double length, const Start& start) const {
+    End over(double length, const Start& start) const {
         const auto& [v, P, S] = start;
         const double more = length - length_;
         const double way = (v * way_[0] + S * way_[2]) + P * way_[1];  // this order: the pull is known last
@@ -92,11 +92,11 @@ public:
 private:
     // The following functions return false if they ended the run.
     bool advance();
-    [[nodiscard]] bool comes_from_afar() const;
+    bool comes_from_afar() const;
     bool move();
     bool rest_until_end();
     void finish();
-    [[nodiscard]] LoneContact::Standstill standstill() const { return {clock_.hi, y_.theta, M_}; }
+    LoneContact::Standstill standstill() const { return {clock_.hi, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
         if (const double theta = contact_.place_at_stop(standstill()); theta != y_.theta)
@@ -110,9 +110,7 @@ private:
         outcome_ = outcome;
         return false;
     }
-    [[nodiscard]] double pull() const {
-        return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(contact_.motion()));
-    }
+    double pull() const { return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(contact_.motion())); }
     /// M - k theta minus the braking of friction, rounded once: near the limit of sticking it is a small difference.
     [[nodiscard]] static double pull_of(double k, double theta, double M, double braking) {
         const double sum = M - braking;
@@ -120,7 +118,7 @@ private:
         const double rest = (M - (sum - part)) - (braking + part);
         return std::fma(-k, theta, sum) + rest;
     }
-    [[nodiscard]] WalkedCurve::End start_from_rest(double start_pull) const;
+    WalkedCurve::End start_from_rest(double start_pull) const;
     /// Moves away from a standstill; returns false if the mass does not start.
     bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
     /// The first zero of the velocity, or the time at which a creep is detected.
@@ -153,7 +151,7 @@ private:
     struct Cost {
         static constexpr double between_calls = 1e7, of_a_line = between_calls / 65536;
         double spent = std::numeric_limits<double>::infinity();
-        [[nodiscard]] bool is_due() const { return spent >= between_calls; }
+        bool is_due() const { return spent >= between_calls; }
     };
     /// The lengths of recent intervals, which the next ones are likely to repeat.
     struct Habits {
@@ -187,10 +185,10 @@ private:
         const model::Samples* samples = nullptr;  // the record if M is nothing else
         double gain = 0, from = 0, to = 0;
         std::size_t place = 0;  // index of the present sample
-        [[nodiscard]] double time(std::size_t ahead) const { return samples->t[place + ahead]; }
-        [[nodiscard]] double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
-        [[nodiscard]] double length() const { return time(1) - time(0); }
-        [[nodiscard]] bool goes_on(double until) const { return place + 1 < samples->t.size() && time(1) <= until; }
+        double time(std::size_t ahead) const { return samples->t[place + ahead]; }
+        double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
+        double length() const { return time(1) - time(0); }
+        bool goes_on(double until) const { return place + 1 < samples->t.size() && time(1) <= until; }
     };
     Record record_;
     Arc arc_;

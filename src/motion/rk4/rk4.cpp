@@ -22,7 +22,7 @@ public:
     Replay(const Problem& problem, const Rk4& method)
         : Course(problem.system), drive_(problem.drive), method_(method), window_(problem.window) {}
 
-    [[nodiscard]] text::Expected<model::State> at(double t) const override;
+    text::Expected<model::State> at(double t) const override;
 
     Checkpoints<Rk4Checkpoint> checkpoints{0};
 
