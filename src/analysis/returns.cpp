@@ -104,7 +104,7 @@ Chart chart_of(Runs& runs) {
 model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named) {
     return {.name = "",
             .when = std::make_shared<Passage>(chart, section, named),
-            .direction = model::Crossing::up,
+            .direction = model::Direction::up,
             .stop = true};
 }
 

@@ -88,13 +88,13 @@ struct FunctionRole {
 };
 
 /// The table that a sampled controller modifies in one run.
-class LuaMemory final : public model::terms::Memory {
+class LuaMemory final : public model::terms::FunctionMemory {
 public:
     LuaMemory(lua_State* main, int reference) : main_(main), reference_(reference) {}
     ~LuaMemory() override;
     /// A copy of the table on the top, or of the table that the function on the top returns; pops it. Null on failure.
-    static std::shared_ptr<model::terms::Memory> from_top();
-    std::shared_ptr<model::terms::Memory> copy() const override;
+    static std::shared_ptr<model::terms::FunctionMemory> from_top();
+    std::shared_ptr<model::terms::FunctionMemory> copy() const override;
     void push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
 
 private:
@@ -122,8 +122,8 @@ public:
                     std::span<const double> states, std::vector<double>* margins) override;
     bool may_go_on() override;
     void forget_failure() override;
-    std::shared_ptr<model::terms::Memory> new_memory() override;
-    void use(const std::shared_ptr<model::terms::Memory>& memory) override { memory_ = memory; }
+    std::shared_ptr<model::terms::FunctionMemory> new_memory() override;
+    void use(const std::shared_ptr<model::terms::FunctionMemory>& memory) override { memory_ = memory; }
 
     /// Makes each run begin with the table that the function at `index` returns, as fifth argument.
     void remember_from(lua_State* L, int index);
@@ -166,7 +166,7 @@ private:
     lua_State* main_;  // for the destructor, which the garbage collector calls at any time
     int reference_;
     int start_ = LUA_NOREF;  // function that returns a new memory
-    std::shared_ptr<model::terms::Memory> memory_ = {};
+    std::shared_ptr<model::terms::FunctionMemory> memory_ = {};
     FunctionRole role_;
     bool feedback_;
 

@@ -30,13 +30,13 @@ public:
     virtual bool act(double t, State& state, std::span<double> states) = 0;
 };
 
-enum class Crossing { up, down, both };
+enum class Direction { up, down, both };
 
 /// An event located where `when` passes zero.
 struct WantedEvent {
     std::string name;
     std::shared_ptr<terms::UserFunction> when;
-    Crossing direction = Crossing::both;
+    Direction direction = Direction::both;
     bool stop = false;
     std::shared_ptr<EventAction> act = {};
 };

@@ -64,8 +64,8 @@ void append_states_and_events(std::vector<std::string>& lines, lua_State* L, con
         std::string text;
         for (const model::WantedEvent& wanted : drive.events) {
             text += fmt::format("{} {{ when = {}", text.empty() ? "" : ",", function_text(L, *wanted.when, &writer));
-            if (wanted.direction != model::Crossing::both) {
-                text += fmt::format(", direction = \"{}\"", wanted.direction == model::Crossing::up ? "up" : "down");
+            if (wanted.direction != model::Direction::both) {
+                text += fmt::format(", direction = \"{}\"", wanted.direction == model::Direction::up ? "up" : "down");
             }
             text += wanted.stop ? ", stop = true" : "";
             text += wanted.name.empty() ? "" : ", name = " + text::quoted(wanted.name);

@@ -17,11 +17,11 @@ class Formula;
 namespace dinal::model::terms {
 
 /// A function's memory between its calls in one run.
-class Memory : text::NotCopied {
+class FunctionMemory : text::NotCopied {
 public:
-    virtual ~Memory() = default;
+    virtual ~FunctionMemory() = default;
     /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
-    virtual std::shared_ptr<Memory> copy() const = 0;
+    virtual std::shared_ptr<FunctionMemory> copy() const = 0;
 };
 
 /// The decisions that a formula's conditions on the motion have taken; while they hold it is smooth. Bit masks stand
@@ -84,13 +84,13 @@ public:
     /// Drops a failure that occurred only in a rejected trial step.
     virtual void forget_failure() {}
     /// A new memory for a run; none if it needs none, or on failure.
-    virtual std::shared_ptr<Memory> new_memory() { return nullptr; }
+    virtual std::shared_ptr<FunctionMemory> new_memory() { return nullptr; }
     /// Sets the memory for the following calls.
-    virtual void use(const std::shared_ptr<Memory>& /*memory*/) {}
+    virtual void use(const std::shared_ptr<FunctionMemory>& /*memory*/) {}
 };
 
 /// A copy that is not shared; null for null.
-inline std::shared_ptr<Memory> copied(const std::shared_ptr<Memory>& memory) {
+inline std::shared_ptr<FunctionMemory> copied(const std::shared_ptr<FunctionMemory>& memory) {
     return memory == nullptr ? nullptr : memory->copy();
 }
 

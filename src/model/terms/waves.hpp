@@ -100,17 +100,17 @@ struct Triangle {
     double amplitude = 1, period = 0, at = 0;
 
     /// A straight piece between two corners, at a quarter and three quarters of each period.
-    struct Side {
+    struct Flank {
         double start, end;
         bool falling;
     };
-    Side side(double t) const {
+    Flank side(double t) const {
         const auto corner = [this](double n) { return at + (0.5 * n + 0.25) * period; };
         const double n = cycle_at(t, 2 * ((t - at) / period) - 0.5, corner);
         return {corner(n), corner(n + 1), std::fmod(n, 2) == 0};
     }
     double value(double t) const {
-        const Side piece = side(t);
+        const Flank piece = side(t);
         const double first = piece.falling ? amplitude : -amplitude;
         return first - 2 * first * fraction(t, piece.start, piece.end);
     }
@@ -120,7 +120,7 @@ struct Triangle {
     double repeats_after() const { return period; }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
-        const Side piece = side(inside);
+        const Flank piece = side(inside);
         const double first = piece.falling ? amplitude : -amplitude;
         sum.add_line(piece.start, first, piece.end > piece.start ? -2 * first / (piece.end - piece.start) : 0);
     }

@@ -44,7 +44,7 @@ private:
     }
     Integrals integrals(std::size_t joint) const {
         const model::Joint& own = joints_[joint];
-        const Kept::Acting& at_nodes = kept_.acting[joint];
+        const Kept::JointTorques& at_nodes = kept_.acting[joint];
         const Series friction = cheb::fit(at_nodes.friction);
         const Series belt = at_nodes.belt != nullptr ? cheb::fit(*at_nodes.belt) : Series{};
         Series v{};
@@ -109,7 +109,7 @@ private:
 
 void History::add(Kept kept, bool for_good, double past) {
     const std::size_t bytes = sizeof(Kept) + (kept.remade != nullptr ? kept.remade->bytes() : 0) +
-                              kept.y.size() * sizeof(Kept::Value) + kept.acting.size() * sizeof(Kept::Acting);
+                              kept.y.size() * sizeof(Kept::Value) + kept.acting.size() * sizeof(Kept::JointTorques);
     if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
     for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
     if (!for_good && !(kept.start.after(kept.length) >= past)) return;

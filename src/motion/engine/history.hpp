@@ -42,7 +42,7 @@ struct Kept {
     std::vector<Value> y{};  ///< each angle, velocity and state
     /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial
     /// torque of the base.
-    struct Acting {
+    struct JointTorques {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< null without base or belt
         std::unique_ptr<Nodes> springs{};       ///< torque of sticking sliders and pressed walls, which store energy
@@ -50,7 +50,7 @@ struct Kept {
         double slides = 0;                      ///< torque of sliding sliders
         bool holds = false;                     ///< whether friction holds without slip
     };
-    std::vector<Acting> acting{};
+    std::vector<JointTorques> acting{};
     std::shared_ptr<const Remade> remade{};  ///< replaces changes and torques
 
     double value(std::size_t k, double x) const {

@@ -358,10 +358,10 @@ private:
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;
         /// Torques that depend on the direction only.
-        struct Constant {
+        struct FixedTorques {
             std::array<double, 2> holding, sliding;
         };
-        std::optional<Constant> constant = {};
+        std::optional<FixedTorques> constant = {};
     };
 
     double bound_of_fastest(const Frame& frame) const;

@@ -79,9 +79,9 @@ private:
     bool put_row(const Stretch& of, double t, double x);
     double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
     double held_by_load(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
-    std::vector<Kept::Acting> acting(const Now& now, const Segment& segment);
-    void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const;
-    void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting);
+    std::vector<Kept::JointTorques> acting(const Now& now, const Segment& segment);
+    void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::JointTorques& acting) const;
+    void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::JointTorques& acting);
     void record_turns(std::size_t body, const Segment& segment, double until, double nothing, SampledLoads& sampled,
                       std::vector<model::Event>& turns);
 

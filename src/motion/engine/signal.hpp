@@ -327,9 +327,9 @@ public:
         double output = 0;
         std::deque<std::pair<double, double>> pending{};  ///< pairs of time and output
         std::int64_t instant = 0;
-        bool on = true;                               ///< level of a relay
-        std::optional<std::size_t> place{};           ///< index in y of a relay's input
-        std::shared_ptr<model::terms::Memory> own{};  ///< memory of a sampled function
+        bool on = true;                                       ///< level of a relay
+        std::optional<std::size_t> place{};                   ///< index in y of a relay's input
+        std::shared_ptr<model::terms::FunctionMemory> own{};  ///< memory of a sampled function
     };
     const std::vector<Memory>& memory() const { return memory_; }
     /// Restores the memory of an earlier run, with copies, as that run may be continued again.

@@ -44,7 +44,7 @@ public:
 
 private:
     /// M in the middle and at the end of a step, if known.
-    struct Sampled {
+    struct Loads {
         double middle, end;
     };
     double time(std::size_t n) const { return steps_.time(n); }
@@ -66,11 +66,11 @@ private:
     std::size_t rest(std::size_t n, std::size_t i, std::size_t count);
 
     // Careful steps, for one step or a part of it:
-    bool careful_step(double end, const Sampled* known);
-    bool piece(double end, bool break_at_end, const Sampled* known);
-    bool stay(double end, bool break_at_end, const Sampled* known);
+    bool careful_step(double end, const Loads* known);
+    bool piece(double end, bool break_at_end, const Loads* known);
+    bool stay(double end, bool break_at_end, const Loads* known);
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
-    Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
+    Stepped step(double length, double end, bool break_at_end, const Loads* known) const;
     /// How feedback is evaluated: at the states of the trial step, or, next to a jump at velocity zero, only on the
     /// present side of it.
     enum class Asks { freely, beside };
@@ -78,7 +78,7 @@ private:
     bool lost_in_rounding(const model::State& y, double a) const;
     void record_turns(double t, double h, double direction, const model::State& y0, double a0, const model::State& y1,
                       double a1);
-    std::optional<double> release_time(double end, bool break_at_end, const Sampled* known, double& M_end) const;
+    std::optional<double> release_time(double end, bool break_at_end, const Loads* known, double& M_end) const;
 
     void rows_until(double end, const StepInterpolant& motion);
     void rows_standing_until(double end);
