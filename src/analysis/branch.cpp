@@ -313,9 +313,8 @@ private:
         if (!turns) return specials;
         const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
         if (auto fold = zero_between(walk.now, spot, ahead[n], on[n], slope)) {
-            const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
-                return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
-            });
+            const auto after = std::ranges::find_if(
+                specials, [&](const Special& special) { return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0; });
             specials.insert(after, {std::move(*fold), BranchKind::fold});
         }
         return specials;
@@ -620,7 +619,7 @@ private:
             found.push_back({std::move(*zero), kind.kind});
         }
         const Vector here = scaled(spot);
-        std::sort(found.begin(), found.end(), [&](const Special& a, const Special& b) {
+        std::ranges::sort(found, [&](const Special& a, const Special& b) {
             return ahead.dot(scaled(a.spot) - here) < ahead.dot(scaled(b.spot) - here);
         });
         return found;
@@ -629,10 +628,10 @@ private:
     /// Next requested parameter value after p towards `way`, otherwise the range's end.
     double next_value(double p, double way) const {
         if (way > 0) {
-            const auto next = std::upper_bound(values_.begin(), values_.end(), p + slack_);
+            const auto next = std::ranges::upper_bound(values_, p + slack_);
             return next == values_.end() ? values_.back() : *next;
         }
-        const auto next = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+        const auto next = std::ranges::lower_bound(values_, p - slack_);
         return next == values_.begin() ? values_.front() : *(next - 1);
     }
 
@@ -670,7 +669,7 @@ private:
             const auto is_here = [&](const auto& seen) {
                 return seen.first == spot.p && (seen.second - spot.x).cwiseQuotient(units_).norm() < there;
             };
-            met_again_ = met_again_ || std::any_of(seen_.begin(), seen_.end(), is_here);
+            met_again_ = met_again_ || std::ranges::any_of(seen_, is_here);
             seen_.emplace_back(spot.p, spot.x);
         }
         // Points between requested values serve plots only: keep few.
@@ -703,7 +702,7 @@ private:
 
     /// The requested value that equals p to rounding, otherwise p.
     double value_near(double p) const {
-        const auto near = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+        const auto near = std::ranges::lower_bound(values_, p - slack_);
         return near != values_.end() && *near <= p + slack_ ? *near : p;
     }
 

@@ -86,7 +86,7 @@ public:
             // otherwise the end is that event
             if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);
         }
-        std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
+        std::ranges::sort(events_, [&](const auto& a, const auto& b) { return before(a, b.t); });
     }
 
     std::string build_text() {
@@ -189,7 +189,7 @@ private:
             run_.initial.theta);
         const auto redundant = motion::engine::redundant_rigid(whole_.system);
         const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
-        if (std::find(redundant.begin(), redundant.end(), own) != redundant.end()) {
+        if (std::ranges::find(redundant, own) != redundant.end()) {
             say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
                 "with the least sum of squares are given.");
         }
@@ -382,9 +382,8 @@ private:
                              : "It moved in one direction all the time.");
             return;
         }
-        const auto turns = static_cast<std::size_t>(std::count_if(swings_.begin(), swings_.end(), [](const Stretch& s) {
-            return s.ended_by && s.ended_by->kind == model::EventKind::turn;
-        }));
+        const auto turns = static_cast<std::size_t>(std::ranges::count_if(
+            swings_, [](const Stretch& s) { return s.ended_by && s.ended_by->kind == model::EventKind::turn; }));
         say("It made {} with {} and {}", text::counted(half_cycles_, "half cycle"), text::counted(turns, "turn"),
             text::counted(stops_.size(), "stop"));
         if (stuck_ > 0) {
@@ -421,7 +420,7 @@ private:
         for (const model::Event& event : run_.events) {
             if (event.kind == slide_begins) from = event.t, slides = true;
             if (event.kind == slide_ends && (slides || !any)) {
-                const bool stops = std::any_of(run_.events.begin(), run_.events.end(), [&](const model::Event& other) {
+                const bool stops = std::ranges::any_of(run_.events, [&](const model::Event& other) {
                     return other.t == event.t && (other.kind == stick || other.kind == rest || other.kind == impact);
                 });
                 add_slide(event.t, stops ? "; then a contact or a wall stopped it" : "; then one side no longer did");
@@ -785,7 +784,7 @@ private:
         note(whole.total.work.acts, "acts at events");
         note(-whole.total.change.kinetic - whole.total.change.spring, "stored energy");
         for (auto* list : {&given, &taken}) {
-            std::sort(list->begin(), list->end(), [](const Share& a, const Share& b) { return a.value > b.value; });
+            std::ranges::sort(*list, [](const Share& a, const Share& b) { return a.value > b.value; });
             const double all = std::accumulate(list->begin(), list->end(), 0.0,
                                                [](double so_far, const Share& share) { return so_far + share.value; });
             std::string text;

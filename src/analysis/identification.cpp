@@ -125,8 +125,8 @@ public:
 
 private:
     void choose_unknowns() {
-        std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
-                     [this](Unknown which) { return is_sought(question_, which); });
+        std::ranges::copy_if(all_unknowns, std::back_inserter(unknowns_),
+                             [this](Unknown which) { return is_sought(question_, which); });
         seeks_Re_ = is_sought(question_, Unknown::Re);
     }
 
@@ -143,9 +143,7 @@ private:
         if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, at(all, Unknown::Re) - at(all, Unknown::Rd));
         return p;
     }
-    Eigen::Index place_of(Unknown which) const {
-        return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
-    }
+    Eigen::Index place_of(Unknown which) const { return std::ranges::find(unknowns_, which) - unknowns_.begin(); }
 
     /// Returns whether the record resolves the motion: each swing has samples, and the initial velocity is not too
     /// high. A search may leave this region, where runs take too long and fits are meaningless.
@@ -320,7 +318,7 @@ private:
         const double first = question_.t.front();
         double length = 2.2 * period;
         while (first + length < question_.t.back()) {
-            const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
+            const auto until = std::ranges::upper_bound(question_.t, first + length);
             rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
             if (!question_.M) break;
             length *= 2;
@@ -420,7 +418,7 @@ private:
         }
         breakaway_ = best_breakaway_;
         const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
-        if (std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(rest);
+        if (std::ranges::none_of(rests_, is_it)) rests_.push_back(rest);
         return breakaway ? sum : std::numeric_limits<double>::infinity();
     }
 
@@ -514,7 +512,7 @@ private:
             return p;
         };
         const double half = std::numbers::pi * std::sqrt(at(best, Unknown::I) / at(best, Unknown::k));
-        const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + half);
+        const auto until = std::ranges::upper_bound(question_.t, question_.t.front() + half);
         constexpr std::ptrdiff_t least_rows = 8;
         const auto rows = static_cast<std::size_t>(std::max(until - question_.t.begin(), least_rows));
         const Prediction model = [&](const Eigen::VectorXd& q) { return predicted(with(q), rows); };
@@ -528,7 +526,7 @@ private:
             auto one = least_squares(model, record_.theta.head(head), q, of_first, steps);
             if (one) found.push_back(std::move(*one));
         }
-        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.sum < b.sum; });
+        std::ranges::sort(found, [](const auto& a, const auto& b) { return a.sum < b.sum; });
         const double told = best_->residual.head(head).squaredNorm();
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, found.size()) && !stopped_; ++i) {
@@ -558,7 +556,7 @@ private:
             sums.emplace_back((record_.theta - *theta).squaredNorm(), at(p, Unknown::Re));
             seen_.emplace_back(sums.back().first, p);
         }
-        std::sort(sums.begin(), sums.end());
+        std::ranges::sort(sums);
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, sums.size()) && !stopped_; ++i) {
             Parameters p = best;
@@ -627,7 +625,7 @@ private:
                 }
             }
         }
-        std::sort(looks.begin(), looks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::ranges::sort(looks, [](const auto& a, const auto& b) { return a.first < b.first; });
         constexpr std::size_t tries = 8;
         for (std::size_t i = 0; i < std::min(tries, looks.size()); ++i) {
             if (!stopped_ && leaves_pattern(suspected)) try_from(looks[i].second);
@@ -1171,8 +1169,8 @@ private:
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {
     const std::size_t n = question.t.size();
-    const auto unknowns = static_cast<std::size_t>(std::count_if(
-        all_unknowns.begin(), all_unknowns.end(), [&](Unknown which) { return is_sought(question, which); }));
+    const auto unknowns = static_cast<std::size_t>(
+        std::ranges::count_if(all_unknowns, [&](Unknown which) { return is_sought(question, which); }));
     const std::size_t least = std::max<std::size_t>(8, unknowns + 1);
     if (n < least || question.theta.size() != n) {
         return text::Error{
@@ -1189,7 +1187,7 @@ text::Expected<Identified> identify(const IdentifyQuestion& question, const moti
                             i + 1, question.t[i], i, question.t[i - 1])};
         }
     }
-    const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
+    const auto [low, high] = std::ranges::minmax_element(question.theta);
     if (*low == *high) {
         return text::Error{fmt::format("nothing moves in the record: all samples are {:.6g}", *low)};
     }

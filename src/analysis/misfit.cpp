@@ -186,12 +186,12 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind
     }
     if (found.empty()) return {};
     const auto better = [](const Found& a, const Found& b) { return a.search.most() > b.search.most(); };
-    std::sort(found.begin(), found.end(), better);
+    std::ranges::sort(found, better);
     const Found& best = found.front();
     Misfit worst{.follows = {best.structure->what}};
     const double odds = 2 * std::log(20.0);
     for (const Found& other : found) {
-        const bool is_told = std::count(worst.follows.begin(), worst.follows.end(), other.structure->what) > 0;
+        const bool is_told = std::ranges::count(worst.follows, other.structure->what) > 0;
         if (is_told || best.search.most() * best.search.most() > other.search.most() * other.search.most() + odds)
             continue;
         worst.follows.push_back(other.structure->what);
@@ -240,7 +240,7 @@ double smallest_step(std::span<const double> values) {
 double step_of_instrument(std::span<const double> values) {
     const double step = smallest_step(values);
     constexpr double rounding = 1e-6;
-    const bool is_even = std::all_of(values.begin(), values.end(), [&](double x) {
+    const bool is_even = std::ranges::all_of(values, [&](double x) {
         const double steps = (x - values.front()) / step;
         return std::fabs(steps - std::round(steps)) < rounding * std::max(1.0, std::fabs(steps));
     });

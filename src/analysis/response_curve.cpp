@@ -4,9 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/returns.hpp"
-#include "model/controller.hpp"
-
 namespace dinal::analysis {
 namespace {
 
@@ -17,7 +14,7 @@ public:
           monitor_(monitor),
           sorted_(question.values),
           way_(question.values.back() > question.values.front() ? 1 : -1) {
-        std::sort(sorted_.begin(), sorted_.end());
+        std::ranges::sort(sorted_);
         range_ = sorted_.back() - sorted_.front();
         const auto& v = question.values;
         walkable_ = v.size() > 1;
@@ -30,8 +27,8 @@ public:
         follow_births();
         if (walked_ && !stopped()) search_from_far_end();
         follow_births();
-        std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
-                         [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
+        std::ranges::stable_sort(curve_.jumps,
+                                 [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
         return std::move(curve_);
     }
 
@@ -162,10 +159,9 @@ private:
         BranchPoint& first = path.points.front();
         constexpr double small = 1e-2;
         if (first.kind == BranchKind::fold && point.kind == BranchKind::hopf) {
-            const double most =
-                std::max_element(path.points.begin(), path.points.end(), [](const auto& a, const auto& b) {
-                    return a.motion.amplitude < b.motion.amplitude;
-                })->motion.amplitude;
+            const double most = std::ranges::max_element(path.points, [](const auto& a, const auto& b) {
+                                    return a.motion.amplitude < b.motion.amplitude;
+                                })->motion.amplitude;
             if (first.motion.amplitude < small * most) path.points.erase(path.points.begin());
         }
         path.points.insert(path.points.begin(), {point.parameter, point.motion});
@@ -176,10 +172,10 @@ private:
     /// Returns whether a branch of limit cycles ended at this Hopf point.
     bool ends_at(const BranchPoint& hopf) const {
         constexpr double near = 1e-3, small = 1e-2;
-        return std::any_of(curve_.branches.begin(), curve_.branches.end(), [&](const auto& branch) {
+        return std::ranges::any_of(curve_.branches, [&](const auto& branch) {
             double most = 0;
             for (const BranchPoint& point : branch) most = std::max(most, point.motion.amplitude);
-            return std::any_of(branch.begin(), branch.end(), [&](const BranchPoint& end) {
+            return std::ranges::any_of(branch, [&](const BranchPoint& end) {
                 return end.motion.period > 0 && end.motion.amplitude < small * most &&
                        std::fabs(end.parameter - hopf.parameter) < near * range_;
             });
@@ -285,7 +281,7 @@ private:
     /// Follows the branch on which a jump lands, if it is new.
     void go_on_from(std::size_t i) {
         const MotionJump jump = curve_.jumps[i];
-        const auto next = std::lower_bound(sorted_.begin(), sorted_.end(), jump.parameter);
+        const auto next = std::ranges::lower_bound(sorted_, jump.parameter);
         if (jump.rising ? next == sorted_.end() : next == sorted_.begin()) return;
         const double p = jump.rising ? *next : *(next - 1);
         add_unless_known(p, motion_after(p, jump.landed, true));

@@ -9,7 +9,6 @@
 #include "analysis/branch.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
-#include "motion/engine/history.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::analysis {

@@ -22,8 +22,7 @@ namespace {
 constexpr double rows_of_period = 400;
 
 bool has_acts(const model::Drive& drive) {
-    return std::any_of(drive.events.begin(), drive.events.end(),
-                       [](const model::WantedEvent& event) { return event.act != nullptr; });
+    return std::ranges::any_of(drive.events, [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
 /// The longest delay of a controller.

@@ -5,7 +5,6 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -98,9 +98,8 @@ bool contracts(const SteadyQuestion& question) {
     const auto asks = [](const model::Excitation& of) { return of.has_feedback() || model::has_memory(of); };
     const auto& joints = question.system->joints;
     return drive.states.empty() && drive.events.empty() && !asks(drive.base) &&
-           std::none_of(drive.loads.begin(), drive.loads.end(), asks) &&
-           std::none_of(drive.belts.begin(), drive.belts.end(), asks) &&
-           std::all_of(joints.begin(), joints.end(), [](const model::Joint& joint) {
+           std::ranges::none_of(drive.loads, asks) && std::ranges::none_of(drive.belts, asks) &&
+           std::ranges::all_of(joints, [](const model::Joint& joint) {
                return joint.is_plain() && is_monotone(joint.friction.law, joint.spring, joint.walls);
            });
 }
@@ -127,13 +126,13 @@ bool is_alike_both_ways(const SteadyQuestion& question) {
                is_antisymmetric(what, question.repeats);
     };
     const auto& joints = question.system->joints;
-    return turns(drive.base) && std::all_of(drive.belts.begin(), drive.belts.end(), turns) &&
-           std::all_of(joints.begin(), joints.end(),
-                       [](const model::Joint& joint) {
-                           return joint.is_plain() && acts_evenly(joint.friction.law) && joint.spring.is_odd() &&
-                                  (!joint.walls || joint.walls->alike());
-                       }) &&
-           std::all_of(drive.loads.begin(), drive.loads.end(), turns);
+    return turns(drive.base) && std::ranges::all_of(drive.belts, turns) &&
+           std::ranges::all_of(joints,
+                               [](const model::Joint& joint) {
+                                   return joint.is_plain() && acts_evenly(joint.friction.law) &&
+                                          joint.spring.is_odd() && (!joint.walls || joint.walls->alike());
+                               }) &&
+           std::ranges::all_of(drive.loads, turns);
 }
 
 std::complex<double> start_around(int i, double farthest, std::size_t body) {

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/returns.hpp"
 #include "analysis/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
@@ -144,7 +143,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repet
             return Moments{off, off * std::polar(1.0, -omega * (t - repeats.start))};
         };
         const double longest = std::min({own, repeats.period, s.lasts()}) / 12;
-        auto end = std::upper_bound(ends.begin(), ends.end(), s.from);
+        auto end = std::ranges::upper_bound(ends, s.from);
         for (double from = s.from; from < s.to;) {
             const double to = end == ends.end() ? s.to : std::min(*end++, s.to);
             sum = sum + integral(breaking, from, to, longest, moments_at);
@@ -387,7 +386,7 @@ std::string description_of(const SteadyQuestion& question, const SteadyMotion& m
     std::vector<std::string> names;
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;
-    const bool sampled = std::any_of(loads.begin(), loads.end(), model::has_memory<model::SampledController>);
+    const bool sampled = std::ranges::any_of(loads, model::has_memory<model::SampledController>);
     SteadyStory story(motion, question.repeats.period == 0, names);
     story.tell({}, sampled, question.repeats.period);
     if (motion.is_found()) story.count_others(others);

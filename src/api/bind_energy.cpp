@@ -12,7 +12,6 @@
 #include "api/data.hpp"
 #include "api/lua_run.hpp"
 #include "lua/memory_limit.hpp"
-#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"
@@ -316,8 +315,7 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
 std::string story_of_simulated(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
     std::vector<const motion::Run*> seen(run->system().joints.size(), &run->result);
-    if (run->of_all())
-        std::transform(parts.begin(), parts.end(), seen.begin(), [](const RunHandle& part) { return &part->result; });
+    if (run->of_all()) std::ranges::transform(parts, seen.begin(), [](const RunHandle& part) { return &part->result; });
     model::Drive drive = run->origin->drive;
     if (run->terms) drive.loads = {*run->terms};
     std::vector<analysis::Energy> energies;

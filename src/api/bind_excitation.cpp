@@ -309,7 +309,7 @@ std::string proof_of(model::UserFunction& function) {
         return "sampled: the function of a delayed excitation has conditions on the motion";
     }
     const auto& steps = own->formula()->steps();
-    const auto conditions = std::count_if(steps.begin(), steps.end(), [](const model::Formula::Step& step) {
+    const auto conditions = std::ranges::count_if(steps, [](const model::Formula::Step& step) {
         return model::is_comparison(step.op) || model::is_fold(step.op);
     });
     if (conditions == 0) return "read: bounded on every stretch";

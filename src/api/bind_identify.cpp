@@ -228,7 +228,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     if (!options.has("free")) return;
     std::vector<bool> held(analysis::unknown_count, true);
     for (const std::string& name : free_names(L, options)) {
-        const auto* const known = std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name);
+        const auto* const known = std::ranges::find(analysis::unknown_names, name);
         if (known == analysis::unknown_names.end()) {
             options.fail({.sentence = fmt::format("free has {}, but what can be fitted is {}", name,
                                                   fmt::join(analysis::unknown_names, ", ")),
@@ -440,7 +440,7 @@ public:
         constexpr double first = 2.2;
         double length = first * swing_;
         while (t_.front() + length < t_.back()) {
-            const auto rows = std::upper_bound(t_.begin(), t_.end(), t_.front() + length) - t_.begin();
+            const auto rows = std::ranges::upper_bound(t_, t_.front() + length) - t_.begin();
             const Eigen::Index count = known_until_[static_cast<std::size_t>(rows) - 1];
             if (count > n + 4) question.stages.push_back(count);
             length *= 2;
@@ -452,8 +452,7 @@ public:
         constexpr double rounding = 1e-7;
         for (const MeasuredColumn& column : columns_) {
             std::vector<double> known;
-            std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(known),
-                         [](double x) { return !std::isnan(x); });
+            std::ranges::copy_if(column.numbers, std::back_inserter(known), [](double x) { return !std::isnan(x); });
             question.steps.push_back(analysis::step_of_instrument(known) / column.size);
             question.least_noise = std::max(question.least_noise, rounding * column.range / column.size);
         }
@@ -489,7 +488,7 @@ private:
             for (std::size_t j = 0; j < system_.joints.size(); ++j) {
                 for (const char* quantity : measure_names) known.push_back(before_names(system_, j) + quantity);
             }
-            const auto found = std::find(known.begin(), known.end(), name);
+            const auto found = std::ranges::find(known, name);
             if (found == known.end()) {
                 options_.fail({.sentence = fmt::format("measured must be {}, got \"{}\"", wanted, name),
                                .option = "measured",
@@ -514,7 +513,7 @@ private:
         }
         if (asked.empty()) options_.wrong("measured", wanted);
         lua_pop(L_, 1);
-        std::sort(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
+        std::ranges::sort(asked, [](const auto& a, const auto& b) {
             return std::tie(a.first.quantity, a.first.joint, a.second) <
                    std::tie(b.first.quantity, b.first.joint, b.second);
         });
@@ -534,9 +533,8 @@ private:
         }
         std::vector<std::size_t> rows;
         for (std::size_t i = 0; i < t.size(); ++i) {
-            const bool known = std::any_of(columns_.begin(), columns_.end(), [i](const MeasuredColumn& column) {
-                return !std::isnan(column.numbers[i]);
-            });
+            const bool known = std::ranges::any_of(
+                columns_, [i](const MeasuredColumn& column) { return !std::isnan(column.numbers[i]); });
             if (known && !std::isnan(t[i])) rows.push_back(i);
         }
         for (const std::size_t i : rows) t_.push_back(t[i]);
@@ -548,7 +546,7 @@ private:
             }
             column.numbers = std::move(kept);
             if (known.size() < 8) options_.fail({"a measured column needs at least 8 numbers"});
-            const auto [low, high] = std::minmax_element(known.begin(), known.end());
+            const auto [low, high] = std::ranges::minmax_element(known);
             if (!(*high > *low)) options_.fail({"a measured column is constant: there is no motion in it"});
             column.range = *high - *low;
             column.size = std::max(analysis::noise_of(known), 1e-6 * column.range);
@@ -617,7 +615,7 @@ private:
 
     /// The first column that measures this quantity, or nullptr.
     const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
-        const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const MeasuredColumn& column) {
+        const auto found = std::ranges::find_if(columns_, [&](const MeasuredColumn& column) {
             return column.joint == joint && column.quantity == quantity;
         });
         return found == columns_.end() ? nullptr : &*found;
@@ -796,8 +794,8 @@ private:
 
     std::optional<Eigen::VectorXd> predicted(const Eigen::VectorXd& p, Eigen::Index count) {
         const int top = lua_gettop(L_);
-        const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
-                                                   known_until_.begin() + 1);
+        const auto rows =
+            static_cast<std::size_t>(std::ranges::lower_bound(known_until_, count) - known_until_.begin() + 1);
         std::optional<Eigen::VectorXd> found;
         if (push_run(p, rows)) found = stacked(p, rows);
         lua_settop(L_, top);
@@ -833,10 +831,10 @@ private:
         }
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
-            const bool is_fitted = std::any_of(free_.begin(), free_.end(),
-                                               [&](const Fitted& one) { return one.name.starts_with(before); });
-            const bool is_measured = std::any_of(columns_.begin(), columns_.end(),
-                                                 [j](const MeasuredColumn& column) { return column.joint == j; });
+            const bool is_fitted =
+                std::ranges::any_of(free_, [&](const Fitted& one) { return one.name.starts_with(before); });
+            const bool is_measured =
+                std::ranges::any_of(columns_, [j](const MeasuredColumn& column) { return column.joint == j; });
             if (is_fitted || is_measured) add_missing_torques(j, p, noise, found);
         }
         return found;
@@ -1133,8 +1131,7 @@ int fit_value(lua_State* L) {
         lua_pushnumber(L, value);
         return 1;
     }
-    if (!fit->from_guess && std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
-                                analysis::unknown_names.end()) {
+    if (!fit->from_guess && std::ranges::find(analysis::unknown_names, name) != analysis::unknown_names.end()) {
         lua::raise(L, {.sentence = fmt::format(
                            "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
                        .culprit = std::string(name)});
@@ -1278,8 +1275,8 @@ std::string fit_summary(const FitAnswer& fit) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
         const std::string unit = unit_of_value(fit.units, name.substr(body_of_value(fit, name).size()));
-        const auto silent = std::find_if(unlisted.begin(), unlisted.end(),
-                                         [&known = name](const auto& one) { return one.first == known; });
+        const auto silent =
+            std::ranges::find_if(unlisted, [&known = name](const auto& one) { return one.first == known; });
         if (silent != unlisted.end()) {
             text += fmt::format("\n  {:<{}} {}", name, width, text_of_bounds(silent->second, unit));
             unlisted.erase(silent);
@@ -1320,8 +1317,8 @@ std::vector<std::string> silent_names(const FitAnswer& fit) {
 std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
     auto errors = fit.errors;
     std::erase_if(errors, [&fit](const auto& error) {
-        return std::isnan(error.second) || std::any_of(fit.silent.begin(), fit.silent.end(),
-                                                       [&error](const auto& one) { return one.first == error.first; });
+        return std::isnan(error.second) ||
+               std::ranges::any_of(fit.silent, [&error](const auto& one) { return one.first == error.first; });
     });
     return errors;
 }

@@ -240,7 +240,7 @@ private:
     }
 
     bool has_nan(std::size_t i) const {
-        return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
+        return std::ranges::any_of(quantities_, [&](const Quantity& x) { return std::isnan(x[i]); });
     }
 
     void check_size(std::string_view name, std::size_t size) {
@@ -253,8 +253,7 @@ private:
     }
 
     void check(std::string_view name, const text::Range& range, std::span<const double> values) const {
-        const auto bad =
-            std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
+        const auto bad = std::ranges::find_if(values, [&](double x) { return !std::isnan(x) && !range.holds(x); });
         if (bad != values.end()) {
             refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
         }

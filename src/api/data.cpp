@@ -95,10 +95,9 @@ std::string heading_of(std::span<const model::Event> events) {
 }  // namespace
 
 std::string first_word(const std::vector<std::string>& words) {
-    const auto found =
-        std::find_if(words.begin(), words.end(), [](const auto& word) { return !files::parse_field(word, false); });
+    const auto found = std::ranges::find_if(words, [](const auto& word) { return !files::parse_field(word, false); });
     if (found != words.end()) return files::shown(*found);
-    const auto number = std::find_if(words.begin(), words.end(), [](const auto& word) { return !word.empty(); });
+    const auto number = std::ranges::find_if(words, [](const auto& word) { return !word.empty(); });
     return number == words.end() ? "''" : "the number " + *number + " in double quotes";
 }
 
@@ -138,13 +137,12 @@ std::string DataColumn::text(std::size_t row) const {
 }
 
 const DataColumn* Data::find(std::string_view name) const {
-    const auto found = std::find_if(columns.begin(), columns.end(), [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find_if(columns, [name](const auto& c) { return c.name == name; });
     return found != columns.end() ? &*found : nullptr;
 }
 
 const DataCompanion* Data::companion(std::string_view name) const {
-    const auto found =
-        std::find_if(companions.begin(), companions.end(), [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find_if(companions, [name](const auto& c) { return c.name == name; });
     return found != companions.end() ? &*found : nullptr;
 }
 

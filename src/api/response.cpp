@@ -12,7 +12,6 @@
 
 #include "analysis/response_curve.hpp"
 #include "analysis/steady_facts.hpp"
-#include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
@@ -185,8 +184,8 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
     const bool is_plane = over.size() > 1;
     if (is_plane) {
         number_curves(located, high - low);
-        std::stable_sort(located.begin(), located.end(),
-                         [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
+        std::ranges::stable_sort(located,
+                                 [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
     }
     const VariedColumn& column = over.back();
     Data points = table_of(
@@ -336,8 +335,7 @@ private:
         const auto* changed = own.object<SystemHandle>("system");
         const SystemHandle system = changed != nullptr ? *changed : system_;
         const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
-        if (!std::equal(system_->joints.begin(), system_->joints.end(), system->joints.begin(), system->joints.end(),
-                        names_alike)) {
+        if (!std::ranges::equal(system_->joints, system->joints, names_alike)) {
             options_.fail("at", "at must return systems with the same bodies and links");
         }
         SteadyOptions asked;
@@ -357,7 +355,7 @@ private:
 
     analysis::Repetition repetition_at(double x, const lua::Options& own, const analysis::SteadyQuestion& question,
                                        const std::optional<double>& period) const {
-        const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
+        const bool is_value = std::ranges::find(values_, x) != values_.end();
         // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
         if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
@@ -370,10 +368,9 @@ private:
         const model::Oscillator body = oscillator_of(*system_).value();
         if (!body.has_linear_spring()) return;
         const double f = 1 / body.natural_period(), from = values_.front();
-        const auto next =
-            std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) < 0; });
+        const auto next = std::ranges::find_if(values_, [&](double x) { return (x - f) * (from - f) < 0; });
         const auto is_it = [f](double x) { return std::fabs(x / f - 1) < 1e-12; };
-        if (next == values_.end() || std::any_of(values_.begin(), values_.end(), is_it)) return;
+        if (next == values_.end() || std::ranges::any_of(values_, is_it)) return;
         const auto there = question(f);
         if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
@@ -484,7 +481,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
         }
     }
     const auto moves = [](const RowOfJoint& joint) { return joint.motion.status == analysis::SteadyStatus::steady; };
-    if (std::any_of(row.joints.begin(), row.joints.end(), moves)) row.status = analysis::SteadyStatus::steady;
+    if (std::ranges::any_of(row.joints, moves)) row.status = analysis::SteadyStatus::steady;
     for (RowOfJoint& joint : row.joints) joint.motion.by_returns.run = {}, joint.motion.by_returns.of_bodies = {};
     return row;
 }
@@ -574,7 +571,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
     if (call.harmonic() && !call.is_plane() && call.system().is_plain()) {
-        const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
+        const auto [low, high] = std::ranges::minmax_element(call.values());
         const HarmonicSweep sweep{
             .system = oscillator_of(call.system()).value(),
             .column = over.back(),

@@ -8,13 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "errors/misspelling.hpp"
 #include "lua/bind.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
-#include "text/words.hpp"
 
 namespace dinal::errors {
 
@@ -197,7 +195,7 @@ std::string decimal_comma(std::string_view statement) {
 std::string file_without_quotes(std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
-        const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
+        const bool ending = std::ranges::find(file_endings, all[i].text) != file_endings.end();
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (all[i].text == name || all[i - 2].text == name)) {
             return "; write the name of a file in quotes: \"" + std::string(all[i - 2].text) + "." +
@@ -496,7 +494,7 @@ std::string missing_star(const Stumble& stumble) {
     const std::string_view name = word.substr(digits);
     const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
     const bool product = digits > 0 && !name.empty() && is_letter(name.front()) && name != "e" && name != "E" &&
-                         std::count(word.begin(), word.end(), '.') < 2;
+                         std::ranges::count(word, '.') < 2;
     return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
 }
 
@@ -542,7 +540,7 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     if (message.opened == "{") {
         return "; is a comma missing there, or a brace?";
     }
-    const auto* const symptom = std::find_if(symptoms.begin(), symptoms.end(), [&message](const Symptom& s) {
+    const auto* const symptom = std::ranges::find_if(symptoms, [&message](const Symptom& s) {
         return (s.complaint.empty() || s.complaint == message.complaint) && (s.near.empty() || s.near == message.near);
     });
     return symptom == symptoms.end() ? "" : std::string(symptom->cure);

@@ -87,7 +87,7 @@ void split(std::string_view line, Separator separator, std::vector<std::string_v
 /// Returns whether a field begins with a quote that the line does not close. (A quote within a word means inches.)
 bool is_left_open(std::string_view line) {
     const std::size_t last = line.rfind('"');
-    if (last == std::string_view::npos || std::count(line.begin(), line.end(), '"') % 2 == 0) return false;
+    if (last == std::string_view::npos || std::ranges::count(line, '"') % 2 == 0) return false;
     constexpr std::string_view before_fields = ",; \t";
     return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
 }
@@ -141,9 +141,8 @@ public:
                             "found " + std::to_string(fields_.size()) + " columns, and names has " +
                                 std::to_string(options_.names.size()));
         }
-        const bool named =
-            std::none_of(fields_.begin(), fields_.end(), [this](auto field) { return is_number(field); }) ||
-            is_word_above_numbers(fields_.front());
+        const bool named = std::ranges::none_of(fields_, [this](auto field) { return is_number(field); }) ||
+                           is_word_above_numbers(fields_.front());
         std::optional<text::Error> fault = take_names(named);
         if (named) rows_.erase(rows_.begin());
         if (named && !rows_.empty() && may_be_units()) {
@@ -202,7 +201,7 @@ private:
     }
 
     bool has_decimal_points() const {
-        return std::any_of(rows_.begin(), rows_.end(), [](const Row& row) {
+        return std::ranges::any_of(rows_, [](const Row& row) {
             for (std::size_t at = row.text.find('.'); at != std::string_view::npos; at = row.text.find('.', at + 1)) {
                 if (at > 0 && at + 1 < row.text.size() && text::is_digit(row.text[at - 1]) &&
                     text::is_digit(row.text[at + 1]))
@@ -232,9 +231,9 @@ private:
 
     /// Returns whether each field, those of names included, is in quotes: then quotes do not mean words.
     [[nodiscard]] bool are_all_in_quotes() {
-        return rows_.size() > 1 && std::all_of(rows_.begin(), rows_.end(), [this](const Row& row) {
+        return rows_.size() > 1 && std::ranges::all_of(rows_, [this](const Row& row) {
                    split(row.text, separator_, fields_);
-                   return std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
+                   return std::ranges::all_of(fields_, [](std::string_view field) {
                        return field.size() >= 2 && field.front() == '"' && field.back() == '"';
                    });
                });
@@ -294,7 +293,7 @@ private:
         std::vector<std::string_view> units, fields;
         split(rows_.front().text, separator_, units);
         if (units.size() != result_.columns.size() ||
-            std::any_of(units.begin(), units.end(), [this](auto field) { return is_number(field); }))
+            std::ranges::any_of(units, [this](auto field) { return is_number(field); }))
             return false;
         bool has_numbers = false;
         for (std::size_t row = 1; row < rows_.size(); ++row) {
@@ -368,7 +367,7 @@ private:
     /// Reads word columns again, as they are recognised only at the end.
     void take_words() {
         std::vector<ReadColumn>& columns = result_.columns;
-        if (std::none_of(columns.begin(), columns.end(), [](const ReadColumn& c) { return c.of_words; })) return;
+        if (std::ranges::none_of(columns, [](const ReadColumn& c) { return c.of_words; })) return;
         for (const Row& row : rows_) {
             split(row.text, separator_, fields_);
             for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -410,8 +409,7 @@ text::Expected<Table> table_of(ReadColumns content) {
     table.values.resize(rows, static_cast<Eigen::Index>(content.columns.size()));
     for (ReadColumn& column : content.columns) {
         if (!column.fault.empty()) return text::Error{column.fault};
-        std::copy(column.numbers.begin(), column.numbers.end(),
-                  table.values.col(static_cast<Eigen::Index>(table.names.size())).data());
+        std::ranges::copy(column.numbers, table.values.col(static_cast<Eigen::Index>(table.names.size())).data());
         table.names.push_back(std::move(column.name));
     }
     return table;
@@ -421,7 +419,7 @@ namespace {
 
 /// Writes a comment, possibly a whole script: each line needs its sign. A NUL would make the file unreadable.
 void write_comment(OutputFile& file, std::string text) {
-    std::replace(text.begin(), text.end(), '\0', ' ');
+    std::ranges::replace(text, '\0', ' ');
     if (text.empty()) {
         file.write("#\n");
     }

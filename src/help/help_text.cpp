@@ -113,7 +113,7 @@ class Names {
 public:
     void add(const std::string& name) {
         constexpr std::size_t most = 5;
-        if (list.size() < most && std::find(list.begin(), list.end(), name) == list.end()) {
+        if (list.size() < most && std::ranges::find(list, name) == list.end()) {
             list.push_back(name);
         }
     }

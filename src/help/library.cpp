@@ -10,7 +10,6 @@
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
-#include "source/value_text.hpp"
 #include "sweep/sweep_run.hpp"
 #include "text/version.hpp"
 

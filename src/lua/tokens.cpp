@@ -23,7 +23,7 @@ public:
         std::vector<Token> found;
         while (skip_space()) {
             Token token = next();
-            line_ += static_cast<int>(std::count(token.text.begin(), token.text.end(), '\n'));
+            line_ += static_cast<int>(std::ranges::count(token.text, '\n'));
             at_ = token.end();
             found.push_back(token);
         }

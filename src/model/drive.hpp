@@ -78,8 +78,7 @@ struct Drive {
     /// Returns whether anything except loads acts or is requested.
     bool has_more() const {
         return !states.empty() || !events.empty() || !base.components().empty() ||
-               std::any_of(belts.begin(), belts.end(),
-                           [](const Excitation& belt) { return !belt.components().empty(); });
+               std::ranges::any_of(belts, [](const Excitation& belt) { return !belt.components().empty(); });
     }
 };
 

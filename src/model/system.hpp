@@ -94,7 +94,7 @@ struct Joint {
         return total;
     }
     bool is_on(std::size_t body) const {
-        return std::any_of(of.begin(), of.end(), [body](const Weight& weight) { return weight.body == body; });
+        return std::ranges::any_of(of, [body](const Weight& weight) { return weight.body == body; });
     }
     const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
     /// Returns whether an Oscillator can represent this joint.
@@ -103,7 +103,7 @@ struct Joint {
     bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
     /// Returns whether weighted sums can be rounded (a weight other than 1 or -1).
     bool is_weighted() const {
-        return std::any_of(of.begin(), of.end(), [](const Weight& weight) { return std::fabs(weight.by) != 1; });
+        return std::ranges::any_of(of, [](const Weight& weight) { return std::fabs(weight.by) != 1; });
     }
     /// Returns the angular acceleration caused by a torque of 1 on the joint alone.
     double lightness(const std::vector<Body>& bodies) const {
@@ -135,7 +135,7 @@ struct System {
         return {};
     }
     bool has_moved() const {
-        return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.moved.has_value(); });
+        return std::ranges::any_of(bodies, [](const Body& body) { return body.moved.has_value(); });
     }
     bool is_linked(std::size_t body) const {
         return std::any_of(joints.begin() + static_cast<std::ptrdiff_t>(bodies.size()), joints.end(),
@@ -157,7 +157,7 @@ struct System {
     }
     double shortest_natural_period() const {
         const std::vector<double> periods = natural_periods();
-        return *std::min_element(periods.begin(), periods.end());
+        return *std::ranges::min_element(periods);
     }
 };
 

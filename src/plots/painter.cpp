@@ -271,7 +271,7 @@ private:
         const std::vector<double> right = edges_between(shades.x, panel_.view.x.logarithmic());
         const std::vector<double> up = edges_between(shades.y, panel_.view.y.logarithmic());
         const auto place = [](const std::vector<double>& edges, double value) {  // edges.size() - 1: outside
-            const auto next = std::upper_bound(edges.begin(), edges.end(), value);
+            const auto next = std::ranges::upper_bound(edges, value);
             return static_cast<std::size_t>((next == edges.begin() ? edges.end() : next) - edges.begin()) - 1;
         };
         Image map = image();
@@ -308,7 +308,7 @@ private:
             const std::vector<std::size_t>& kept = traces.emplace_back(thinned(curve, paper));
             const double each = curve.style == Style::line ? 1 : is_crowd(curve) || curve.style == Style::fill ? 2 : 10;
             corners += each * static_cast<double>(kept.size());
-            any = any || std::any_of(kept.begin(), kept.end(), [&](std::size_t place) { return has(curve, place); });
+            any = any || std::ranges::any_of(kept, [&](std::size_t place) { return has(curve, place); });
         }
         if (!any) page_.words({"(no points)", (panel_.left + panel_.right) / 2, (panel_.bottom + panel_.top) / 2});
         const bool too_many = corners > most_corners_;
@@ -552,8 +552,7 @@ private:
                          panel_.bottom - end.up * size_.height - 0.6 * em},
                         Align::left);
         }
-        std::stable_sort(outside.begin(), outside.end(),
-                         [](const NamedEnd& a, const NamedEnd& b) { return a.up > b.up; });
+        std::ranges::stable_sort(outside, [](const NamedEnd& a, const NamedEnd& b) { return a.up > b.up; });
         constexpr double apart = 1.2 * em;
         std::vector<double> places;
         for (const NamedEnd& end : outside) {

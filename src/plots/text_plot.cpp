@@ -209,7 +209,7 @@ void draw_shades(Canvas& canvas, const Shades& shades, const Projection& project
     const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
     const std::vector<double> y = edges_between(shades.y, projection.view.y.logarithmic());
     const auto place = [](const std::vector<double>& edges, double value) {
-        return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), value) - edges.begin());
+        return static_cast<std::size_t>(std::ranges::upper_bound(edges, value) - edges.begin());
     };
     const int wide = canvas.width() / canvas.columns(), high = canvas.height() / canvas.rows();
     for (int row = 0; row < canvas.rows(); ++row) {
@@ -238,8 +238,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     }
     // The first curve drawn in a cell wins, so background curves come last.
     std::vector<std::size_t> order = drawing_order(figure);
-    const auto front =
-        std::find_if(order.begin(), order.end(), [&](std::size_t i) { return !figure.curves[i].behind; });
+    const auto front = std::ranges::find_if(order, [&](std::size_t i) { return !figure.curves[i].behind; });
     std::rotate(order.begin(), front, order.end());
     for (const std::size_t i : order) {
         const Curve& curve = figure.curves[i];
@@ -709,8 +708,7 @@ std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
     const std::vector<Figure> figures = with_envelopes(with_bands(given, dots * format.columns),
                                                        (format.charset == Charset::ascii ? 1 : dots) * format.columns);
     TextFormat each = format;
-    const auto piles =
-        std::count_if(figures.begin(), figures.end(), [](const Figure& figure) { return !figure.below; });
+    const auto piles = std::ranges::count_if(figures, [](const Figure& figure) { return !figure.below; });
     const int count = std::max(1, static_cast<int>(piles));
     const bool together = (format.columns - 2 * (count - 1)) / count >= narrowest_panel;
     if (together) {

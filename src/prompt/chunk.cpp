@@ -187,8 +187,8 @@ Chunk compile(lua_State* L, const std::string& text) {
 
 bool only_reads_variable(const Chunk& chunk) {
     const std::vector<lua::Token> all = lua::tokens(chunk.expression);
-    const auto code = std::count_if(all.begin(), all.end(),
-                                    [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
+    const auto code =
+        std::ranges::count_if(all, [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
     return chunk.statements.empty() && code == 1 && all.front().kind == lua::TokenKind::name;
 }
 

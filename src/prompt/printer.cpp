@@ -79,7 +79,7 @@ std::string function_text(lua_State* L, int index, const terminal::Display& scre
     lua_Debug about{};
     lua_pushvalue(L, index);
     lua_getinfo(L, ">S", &about);
-    if (source && std::count(source->begin(), source->end(), '\n') < most_source_lines) {
+    if (source && std::ranges::count(*source, '\n') < most_source_lines) {
         return *source;
     }
     return fmt::format("function at {}:{}", about.short_src, about.linedefined);
@@ -151,7 +151,7 @@ public:
         lua_newtable(L_);
         keys_ = lua_gettop(L_);
         collect();
-        std::sort(order_.begin(), order_.end());
+        std::ranges::sort(order_);
     }
 
     std::size_t size() const { return listed_ + others_; }
@@ -265,7 +265,7 @@ private:
             return item;
         }
         const void* address = lua_topointer(L_, index);
-        if (std::find(open_.begin(), open_.end(), address) != open_.end()) {
+        if (std::ranges::find(open_, address) != open_.end()) {
             return {"<cycle>"};
         }
         return open_.size() >= deepest ? Piece{"{...}"} : table_line(index, room);

@@ -157,8 +157,7 @@ bool run_step(lua_State* L, const StartStep& step) {
 }
 
 bool run_steps(lua_State* L, const Arguments& arguments) {
-    return std::all_of(arguments.steps.begin(), arguments.steps.end(),
-                       [L](const StartStep& s) { return run_step(L, s); });
+    return std::ranges::all_of(arguments.steps, [L](const StartStep& s) { return run_step(L, s); });
 }
 
 /// Sets the global `arg`: the script at 0, its arguments from 1, words before it at negative indices.

@@ -18,7 +18,6 @@
 #include "api/picture.hpp"
 #include "help/library.hpp"
 #include "help/signature.hpp"
-#include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "python/state.hpp"
 #include "source/function_source.hpp"

@@ -86,7 +86,7 @@ void fill_record(lua_State* L, int index, py::object& record, Seen& seen, int de
                           is_number ? lua_tonumber(L, -2) : 0, is_name ? lua::text_at(L, -2) : std::string_view(),
                           std::move(key), value_to_python(L, -1, seen, depth)});
     }
-    std::stable_sort(others.begin(), others.end(), [](const Field& a, const Field& b) {
+    std::ranges::stable_sort(others, [](const Field& a, const Field& b) {
         return std::tie(a.rank, a.number, a.name) < std::tie(b.rank, b.number, b.name);
     });
     for (const Field& field : others) record[field.key] = field.value;

@@ -91,7 +91,7 @@ void find_in(lua_State* L, std::string_view text, const Shape& wanted, Found& fo
         const Likeness like = source.empty() ? Likeness::none : likeness(L, source, wanted);
         if (like != Likeness::none) {
             auto& list = like == Likeness::code ? found.by_code : found.by_shape;
-            if (std::find(list.begin(), list.end(), source) == list.end()) {
+            if (std::ranges::find(list, source) == list.end()) {
                 list.push_back(source);
             }
         }

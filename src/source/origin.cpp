@@ -104,7 +104,7 @@ void append_acting(std::vector<std::string>& lines, lua_State* L, const char* na
 }
 
 bool acts(const std::vector<model::Excitation>& acting) {
-    return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
+    return std::ranges::any_of(acting, [](const auto& one) { return !one.components().empty(); });
 }
 
 /// The lines that construct a system and its drive. L may be null if there are no user functions.

@@ -875,7 +875,7 @@ std::optional<std::vector<std::string>> SweepResults::words(const std::vector<do
         const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), of_word = bits & ~nan_of_words;
         return (bits & nan_of_words) == nan_of_words && of_word <= words_.size() ? of_word : 0;
     };
-    if (std::none_of(numbers.begin(), numbers.end(), place)) return std::nullopt;
+    if (std::ranges::none_of(numbers, place)) return std::nullopt;
     std::vector<std::string> words;
     words.reserve(numbers.size());
     for (const double x : numbers) {
@@ -914,7 +914,7 @@ void SweepResults::fail(std::size_t point, std::string message) {
 }
 
 std::size_t SweepResults::done() const {
-    return static_cast<std::size_t>(std::count(done_.begin(), done_.end(), 1));
+    return static_cast<std::size_t>(std::ranges::count(done_, 1));
 }
 
 const double* SweepResults::find(std::string_view name) const {

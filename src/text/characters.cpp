@@ -172,9 +172,8 @@ std::string in_ascii(std::string_view text) {
         if (next.code < 0x80) {
             result += static_cast<char>(next.code);
         } else if (next.columns > 0) {
-            const auto* const found = std::find_if(spelled.begin(), spelled.end(), [&next](const auto& pair) {
-                return pair.first == static_cast<char32_t>(next.code);
-            });
+            const auto* const found = std::ranges::find_if(
+                spelled, [&next](const auto& pair) { return pair.first == static_cast<char32_t>(next.code); });
             result += found != spelled.end() ? found->second : "?";
         }
     }

@@ -24,7 +24,7 @@ constexpr bool is_name_char(char c) {
 
 inline std::string lower(std::string_view text) {
     std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return lower(c); });
+    std::ranges::transform(result, result.begin(), [](char c) { return lower(c); });
     return result;
 }
 

@@ -13,7 +13,7 @@ bool closes_period(const Samples& s) {
 }
 
 double range_of(const std::vector<double>& values) {
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const auto [low, high] = std::ranges::minmax_element(values);
     return *high - *low;
 }
 

@@ -141,7 +141,7 @@ private:
         if (t[i] <= at && at < t[i + 1]) {
             return i;
         }
-        return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), at) - t.begin()) - 1;
+        return static_cast<std::size_t>(std::ranges::upper_bound(t, at) - t.begin()) - 1;
     }
 
     double most_;  // cached: every run needs it, and a record may be long

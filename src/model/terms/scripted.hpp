@@ -118,7 +118,7 @@ struct Scripted {
         }
         const auto first_in_cycle = [this, t](double n) {
             const auto at = [this, n](double b) { return b + n * period + delay; };
-            const auto found = std::partition_point(breaks.begin(), breaks.end(), [&](double b) { return at(b) <= t; });
+            const auto found = std::ranges::partition_point(breaks, [&](double b) { return at(b) <= t; });
             return found == breaks.end() ? never : at(*found);
         };
         if (!(period > 0)) {

@@ -5,7 +5,6 @@
 // new level and value(nextafter(b, -inf)) the old one, however a delay or the ten thousandth period is rounded.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <initializer_list>

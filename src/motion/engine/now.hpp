@@ -1,8 +1,6 @@
 // The present of a run: its time, its state and the modes of its contacts.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 

@@ -1,7 +1,6 @@
 // The user's events: functions of the motion whose zeros are located.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 

@@ -3,7 +3,6 @@
 // do not change the motion.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "motion/checkpoints.hpp"
