@@ -784,7 +784,7 @@ private:
         note(whole.total.work.acts, "acts at events");
         note(-whole.total.change.kinetic - whole.total.change.spring, "stored energy");
         for (auto* list : {&given, &taken}) {
-            std::ranges::sort(*list, [](const Share& a, const Share& b) { return a.value > b.value; });
+            std::ranges::sort(*list, std::ranges::greater{}, &Share::value);
             const double all = std::accumulate(list->begin(), list->end(), 0.0,
                                                [](double so_far, const Share& share) { return so_far + share.value; });
             std::string text;

@@ -27,8 +27,7 @@ public:
         follow_births();
         if (walked_ && !stopped()) search_from_far_end();
         follow_births();
-        std::ranges::stable_sort(curve_.jumps,
-                                 [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
+        std::ranges::stable_sort(curve_.jumps, {}, &MotionJump::parameter);
         return std::move(curve_);
     }
 

@@ -48,8 +48,7 @@ constexpr auto integrator_module_members = functions_of(std::type_identity<motio
 // ---- integrator.h
 
 const text::Option* find_option(const motion::MethodText& about, std::string_view name) {
-    const auto found =
-        std::ranges::find_if(about.call.options, [=](const text::Option& option) { return option.name == name; });
+    const auto found = std::ranges::find(about.call.options, name, &text::Option::name);
     return found == about.call.options.end() ? nullptr : &*found;
 }
 

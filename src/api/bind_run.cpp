@@ -417,7 +417,7 @@ int body_or_link(lua_State* L) {
     if (!run->of_all()) return 0;
     const std::string_view name = lua_tostring(L, 2);
     const auto& joints = run->system().joints;
-    const auto own = std::ranges::find_if(joints, [&](const model::Joint& j) { return j.name == name; });
+    const auto own = std::ranges::find(joints, name, &model::Joint::name);
     if (own == joints.end()) return 0;
     push_run(L, part_of(run, static_cast<std::size_t>(own - joints.begin())));
     return 1;
@@ -547,7 +547,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     if (result.on_belt) {  // extremes of theta on a belt are no events
         const std::vector<model::Event> turns = motion::turns_on_belt(result);
         events.insert(events.end(), turns.begin(), turns.end());
-        std::ranges::stable_sort(events, [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
+        std::ranges::stable_sort(events, {}, &model::Event::t);
     }
     call.check();
     const auto found = analysis::recurrence(events);

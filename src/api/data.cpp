@@ -137,12 +137,12 @@ std::string DataColumn::text(std::size_t row) const {
 }
 
 const DataColumn* Data::find(std::string_view name) const {
-    const auto found = std::ranges::find_if(columns, [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find(columns, name, &DataColumn::name);
     return found != columns.end() ? &*found : nullptr;
 }
 
 const DataCompanion* Data::companion(std::string_view name) const {
-    const auto found = std::ranges::find_if(companions, [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find(companions, name, &DataCompanion::name);
     return found != companions.end() ? &*found : nullptr;
 }
 

@@ -184,8 +184,7 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
     const bool is_plane = over.size() > 1;
     if (is_plane) {
         number_curves(located, high - low);
-        std::ranges::stable_sort(located,
-                                 [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
+        std::ranges::stable_sort(located, {}, &LocatedPoint::curve);
     }
     const VariedColumn& column = over.back();
     Data points = table_of(

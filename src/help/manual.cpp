@@ -1,4 +1,3 @@
-#include "help/manual.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -114,8 +113,7 @@ std::vector<Listed> listed_options() {
         for (const lua::Member& member : section.description->members) {
             for (const text::Call* call : calls_of(member.doc)) {
                 for (const OptionLine& line : option_lines(call->options)) {
-                    const auto known =
-                        std::ranges::find_if(all, [&line](const Listed& each) { return each.sense == sense(line); });
+                    const auto known = std::ranges::find(all, sense(line), &Listed::sense);
                     if (known == all.end()) {
                         all.push_back({sense(line), listed(line), line.option});
                     } else {

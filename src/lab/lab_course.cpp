@@ -587,7 +587,7 @@ int lab_marks(lua_State* L) {
     LabDesk& desk = desk_with_number(L, "lab.marks");
     std::vector<LabAnswer> answers = desk.answers;
     std::erase_if(answers, [&](const LabAnswer& a) { return a.tries == 0 || a.number != desk.number; });
-    std::ranges::sort(answers, [](const LabAnswer& a, const LabAnswer& b) { return a.question < b.question; });
+    std::ranges::sort(answers, {}, &LabAnswer::question);
     const auto right = std::ranges::count_if(answers, [](const LabAnswer& a) { return a.right; });
     Data data = table_of(answers, ListColumn{"question", &LabAnswer::question},
                          ListColumn{"verdict", [](const LabAnswer& a) { return a.right ? "right" : "wrong"; }},

@@ -56,7 +56,7 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
                            .option = "integrator"};
     }
     const auto resolves = [&](const model::Oscillator& mode) {
-        return std::none_of(drive.loads.begin(), drive.loads.end(), [&](const model::Excitation& load) {
+        return std::ranges::none_of(drive.loads, [&](const model::Excitation& load) {
             return wrong_method(method, mode, load, window).has_value();
         });
     };

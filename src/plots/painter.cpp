@@ -552,7 +552,7 @@ private:
                          panel_.bottom - end.up * size_.height - 0.6 * em},
                         Align::left);
         }
-        std::ranges::stable_sort(outside, [](const NamedEnd& a, const NamedEnd& b) { return a.up > b.up; });
+        std::ranges::stable_sort(outside, std::ranges::greater{}, &NamedEnd::up);
         constexpr double apart = 1.2 * em;
         std::vector<double> places;
         for (const NamedEnd& end : outside) {

@@ -1,4 +1,4 @@
-#include "plots/paper_layout.hpp"
+#include "plots/painter.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -33,7 +33,7 @@ Symbol symbol_of(std::string_view name) {
     if (const motion::ColumnKind* kind = motion::find_column_kind(inner)) {
         return {kind->name, kind->symbol, kind->quantity};
     }
-    const auto* found = std::ranges::find_if(ratios, [inner](const Symbol& symbol) { return symbol.name == inner; });
+    const auto* found = std::ranges::find(ratios, inner, &Symbol::name);
     return found != ratios.end() ? *found
                                  : Symbol{name, name, name.ends_with("/k") ? Quantity::angle : Quantity::other};
 }

@@ -89,8 +89,7 @@ std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z
     if (std::isnan(z) || bands.empty()) return std::nullopt;
     const bool single = std::isfinite(bands.back().to);  // each band is one number
     if (single && std::isinf(z)) return std::nullopt;
-    const auto next =
-        std::ranges::upper_bound(bands, z, [](double value, const ShadeBand& b) { return value < b.from; });
+    const auto next = std::ranges::upper_bound(bands, z, {}, &ShadeBand::from);
     return next == bands.begin() ? 0 : static_cast<std::size_t>(next - bands.begin()) - 1;
 }
 

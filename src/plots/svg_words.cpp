@@ -77,8 +77,7 @@ std::string swings_text(const std::vector<Point>& turns) {
 }
 
 std::string course_over_x(const std::vector<Point>& points) {
-    const auto [low, high] =
-        std::ranges::minmax_element(points, [](const Point& a, const Point& b) { return a.y < b.y; });
+    const auto [low, high] = std::ranges::minmax_element(points, {}, &Point::y);
     const double from = points.front().y, to = points.back().y;
     if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
     constexpr double visible = 0.01;  // fraction of the height

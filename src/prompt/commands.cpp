@@ -251,7 +251,7 @@ void help(Session& session, const std::string& argument) {
 
 /// The command with this name, or with a unique beginning; otherwise nullptr.
 const Command* find(std::string_view name) {
-    const auto* const exact = std::ranges::find_if(commands, [name](const Command& c) { return c.name == name; });
+    const auto* const exact = std::ranges::find(commands, name, &Command::name);
     if (exact != commands.end()) {
         return exact;
     }

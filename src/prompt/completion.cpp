@@ -129,8 +129,7 @@ OpenTable open_table(lua_State* L, const OpenCall& call) {
     text::Fields::Place place = text::Fields::Place::itself;
     for (const std::string_view name : call.path) {
         if (known != nullptr && place == text::Fields::Place::itself) {
-            const auto row = std::ranges::find_if(known->options,
-                                                  [name](const text::Option& option) { return option.name == name; });
+            const auto row = std::ranges::find(known->options, name, &text::Option::name);
             const text::Fields table = row == known->options.end() ? text::Fields{} : row->fields;
             known = table.call;
             place = table.place;
@@ -593,8 +592,7 @@ private:
 
 const help::Section* section_of(const lua::Class* description) {
     const auto all = help::sections();
-    const auto found =
-        std::ranges::find_if(all, [description](const help::Section& s) { return s.description == description; });
+    const auto found = std::ranges::find(all, description, &help::Section::description);
     return found == all.end() ? nullptr : &*found;
 }
 

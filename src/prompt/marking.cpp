@@ -83,7 +83,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
         hand_in.file = place->path();
         hand_in.name = text::displayable(place->path().lexically_relative(folder).string());
     }
-    std::ranges::sort(all, [](const HandIn& a, const HandIn& b) { return a.file < b.file; });
+    std::ranges::sort(all, {}, &HandIn::file);
     return all;
 }
 

@@ -1,4 +1,3 @@
-#include "prompt/repl.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>

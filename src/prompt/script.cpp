@@ -29,7 +29,7 @@
 #include "prompt/marking.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
-#include "prompt/repl.hpp"
+#include "prompt/session.hpp"
 #include "prompt/user_files.hpp"
 #include "source/function_source.hpp"
 #include "text/version.hpp"

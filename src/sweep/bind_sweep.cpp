@@ -369,7 +369,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
     }
     constexpr int most = 400;
     for (int i = 0; i < most; ++i) {
-        std::ranges::sort(corner, [](const Spot& a, const Spot& b) { return a.value < b.value; });
+        std::ranges::sort(corner, {}, &Spot::value);
         double widest = 0;
         for (const Spot& other : corner) {
             for (std::size_t k = 0; k < 2; ++k) widest = std::max(widest, std::fabs(other.at[k] - corner[0].at[k]));
@@ -402,7 +402,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
             corner[c] = look({(corner[0].at[0] + corner[c].at[0]) / 2, (corner[0].at[1] + corner[c].at[1]) / 2});
         }
     }
-    return *std::ranges::min_element(corner, [](const Spot& a, const Spot& b) { return a.value < b.value; });
+    return *std::ranges::min_element(corner, {}, &Spot::value);
 }
 
 Spot least(const Cost& cost, std::size_t parameters) {

@@ -22,8 +22,7 @@ double way_of(const model::Excitation& belt, double from, double to) {
 }
 
 bool is_stuck(const std::vector<Interval>& stuck, double t) {
-    const auto next =
-        std::ranges::upper_bound(stuck, t, [](double time, const Interval& interval) { return time < interval.low; });
+    const auto next = std::ranges::upper_bound(stuck, t, {}, &Interval::low);
     return next != stuck.begin() && t <= std::prev(next)->high;
 }
 
