@@ -156,8 +156,7 @@ Parameters FitStarts::weak_form() const {
     const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < 5; ++c) {
-        const bool known =
-            c < 4 ? question_.gives(order[c]) : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
+        const bool known = c < 4 ? question_.gives(order[c]) : at(question_.given, Unknown::offset) == 0.0;
         if (!known) columns.push_back(c);
     }
     const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());

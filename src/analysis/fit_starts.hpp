@@ -14,13 +14,6 @@ namespace dinal::analysis {
 /// A value for each unknown, fitted or given.
 using Parameters = std::array<double, unknown_count>;
 
-inline double& at(Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
-inline double at(const Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
-
 /// The measured angles, with properties that need no model.
 struct MeasuredAngles {
     explicit MeasuredAngles(const IdentifyQuestion& question);

@@ -661,7 +661,7 @@ private:
         if (!freest_) freest_ = best;
         best_ = without;
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
-        tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
+        at(tells_nothing_, which) = is_flat;
         if (is_flat && which == Unknown::velocity0 && !question_.gives(Unknown::theta0)) see_short_beginnings();
     }
 
@@ -864,7 +864,7 @@ private:
         if (!question_.M && !question_.gives(Unknown::Re)) {
             at(found.value, Unknown::Re) =
                 std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
-            found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
+            at(found.silent, Unknown::Re) = true;
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
@@ -903,7 +903,7 @@ private:
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
                 ratio->error = ratio->cautious = 0;
             }
-            for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
+            for (const Unknown which : unknowns_) at(found.silent, which) = true;
             found.low.fill(-model::never), found.high.fill(model::never);
         }
         const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
@@ -1003,10 +1003,10 @@ private:
 
     void set_errors(const Eigen::MatrixXd& full, double spread, Identified& found) const {
         for (const Unknown which : unknowns_) {
-            const auto i = static_cast<std::size_t>(which);
             const auto place = static_cast<Eigen::Index>(which);
             const double open = least_error([which](const Parameters& p) { return at(p, which); });
-            found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
+            at(found.error, which) =
+                at(found.silent, which) ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
         }
         ratios(full, spread, found);
     }
@@ -1015,12 +1015,12 @@ private:
 
     void set_bounds(Unknown which, double spread, const Eigen::MatrixXd& covariance, const std::vector<bool>& open,
                     Identified& found) {
-        const auto i = static_cast<std::size_t>(which);
-        if (!found.silent[i]) return;
-        double &low = found.low[i] = found.value[i], &high = found.high[i] = found.value[i];
+        if (!at(found.silent, which)) return;
+        double &low = at(found.low, which) = at(found.value, which),
+               &high = at(found.high, which) = at(found.value, which);
         if (which == Unknown::Re && !question_.M) {
             std::tie(low, high) = breakaways();
-        } else if (tells_nothing_[i]) {
+        } else if (at(tells_nothing_, which)) {
             constexpr double equally_good = 4;  // two standard errors
             for (const auto& [sum, p] : seen_) {
                 if (sum > best_->sum + equally_good * spread * spread) continue;

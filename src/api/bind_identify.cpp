@@ -241,12 +241,11 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         held[place] = false;
     }
     for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
-        const auto place = static_cast<std::size_t>(which);
-        if (!held[place] || question.given[place]) continue;
+        if (!held[static_cast<std::size_t>(which)] || question.gives(which)) continue;
         if (which != Unknown::I && which != Unknown::k) {
-            question.given[place] = 0;  // an Re below Rd is raised to Rd
+            at(question.given, which) = 0;  // an Re below Rd is raised to Rd
         } else if (question.M) {
-            options.fail({fmt::format("{} is neither given nor in free", analysis::unknown_names[place])});
+            options.fail({fmt::format("{} is neither given nor in free", at(analysis::unknown_names, which))});
         }
     }
 }
@@ -1034,10 +1033,7 @@ void name_values(FitAnswer& fit) {
         constexpr double much = 1.5;
         if (fit.found.has_errors && error > 0 && cautious > much * error) fit.cautious.emplace_back(name, cautious);
     };
-    const auto given = [&fit](Unknown which) {
-        return fit.question.given[static_cast<std::size_t>(which)].has_value();
-    };
-    const bool absolute = fit.question.M || given(Unknown::I) || given(Unknown::k);
+    const bool absolute = fit.question.M || fit.question.gives(Unknown::I) || fit.question.gives(Unknown::k);
     if (!absolute) fit.units.M.clear();
     add("omega0", found.omega0.value, found.omega0.error, found.omega0.cautious);
     add("zeta", found.zeta.value, found.zeta.error, found.zeta.cautious);
@@ -1049,7 +1045,7 @@ void name_values(FitAnswer& fit) {
     if (absolute && found.is_noise) {
         for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
     }
-    const double k = found.value[static_cast<std::size_t>(Unknown::k)];
+    const double k = at(found.value, Unknown::k);
     for (std::size_t i = 0; i < analysis::unknown_names.size(); ++i) {
         if (!found.silent[i]) continue;
         std::string name(analysis::unknown_names[i]);
@@ -1059,13 +1055,13 @@ void name_values(FitAnswer& fit) {
         if (!absolute && name == "Rd") name = "Rd_over_k", low /= k, high /= k;
         fit.silent.push_back({name, {low, high}});
     }
-    const auto value = [&found](Unknown which) { return found.value[static_cast<std::size_t>(which)]; };
-    auto system = model::Oscillator::make({.inertia = value(Unknown::I),
-                                           .stiffness = value(Unknown::k),
-                                           .damping = value(Unknown::C),
-                                           .kinetic_friction = value(Unknown::Rd),
-                                           .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd)),
-                                           .units = fit.units});
+    auto system =
+        model::Oscillator::make({.inertia = at(found.value, Unknown::I),
+                                 .stiffness = k,
+                                 .damping = at(found.value, Unknown::C),
+                                 .kinetic_friction = at(found.value, Unknown::Rd),
+                                 .breakaway = std::max(at(found.value, Unknown::Re), at(found.value, Unknown::Rd)),
+                                 .units = fit.units});
     if (system) fit.system = model::as_system(system.value());
 }
 
@@ -1116,10 +1112,14 @@ int identify_record(lua_State* L) {
 
 // ---- the answer
 
-std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+std::vector<std::string> names_of_pairs(const auto& pairs) {
     std::vector<std::string> names;
-    for (const auto& value : fit.values) names.push_back(value.first);
+    for (const auto& pair : pairs) names.push_back(pair.first);
     return names;
+}
+
+std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+    return names_of_pairs(fit.values);
 }
 
 int fit_value(lua_State* L) {
@@ -1211,9 +1211,8 @@ constexpr std::array<const char*, 3> causes{
 std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     std::vector<std::string> notes;
     const analysis::Identified& found = fit.found;
-    constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
-    const double Rd = found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * found.error[kinetic]) {  // tolerance for rounding in a record without noise
+    const double Rd = at(found.value, Unknown::Rd), Re = fit.question.given_or(Unknown::Re, Rd);
+    if (Re < Rd * (1 - 1e-9) - 3 * at(found.error, Unknown::Rd)) {  // tolerance for rounding in a record without noise
         notes.push_back(fmt::format(
             "Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
             "Rd; leave Re out, or give Rd as well",
@@ -1287,7 +1286,7 @@ std::string fit_summary(const FitAnswer& fit) {
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit);
     }
-    const double k = fit.found.value[static_cast<std::size_t>(Unknown::k)];
+    const double k = at(fit.found.value, Unknown::k);
     for (const auto& [name, bounds] : unlisted) {
         if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1 determines only the ratio
             const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
@@ -1308,9 +1307,7 @@ std::string fit_summary(const FitAnswer& fit) {
 }
 
 std::vector<std::string> silent_names(const FitAnswer& fit) {
-    std::vector<std::string> names;
-    for (const auto& one : fit.silent) names.push_back(one.first);
-    return names;
+    return names_of_pairs(fit.silent);
 }
 
 /// The errors that are not withheld, of values that the record determines.
