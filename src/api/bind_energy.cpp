@@ -15,6 +15,7 @@
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -277,11 +278,9 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     constexpr std::size_t name_and_number = 23;
     std::string card;
     const std::string whole = terminal::spelled(text_of_energy(energy), screen);
-    for (std::string_view rest = whole; !rest.empty();) {
-        const std::string_view line = rest.substr(0, rest.find('\n'));
+    for (const std::string_view line : text::split(whole, '\n')) {
         const bool fits = text::columns(line) < screen.width || !line.starts_with(' ');
         card.append(card.empty() ? "" : "\n").append(fits ? line : line.substr(0, name_and_number));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     }
     return text::wrapped(card, screen.width - 1);
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 #include <vector>
 
@@ -13,6 +12,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
 #include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::errors {
 
@@ -492,9 +492,8 @@ std::string missing_star(const Stumble& stumble) {
     }
     const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
     const std::string_view name = word.substr(digits);
-    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-    const bool product = digits > 0 && !name.empty() && is_letter(name.front()) && name != "e" && name != "E" &&
-                         std::ranges::count(word, '.') < 2;
+    const bool product = digits > 0 && !name.empty() && text::is_name_char(name.front()) && name != "e" &&
+                         name != "E" && std::ranges::count(word, '.') < 2;
     return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
 }
 

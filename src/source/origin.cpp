@@ -11,20 +11,14 @@
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
 #include "text/version.hpp"
+#include "text/words.hpp"
 
 namespace dinal::source {
 
 namespace {
 
 void append_lines(std::vector<std::string>& lines, std::string_view text) {
-    for (;;) {
-        const std::size_t end = text.find('\n');
-        lines.emplace_back(text.substr(0, end));
-        if (end == std::string_view::npos) {
-            return;
-        }
-        text.remove_prefix(end + 1);
-    }
+    for (const std::string_view line : text::split(text, '\n')) lines.emplace_back(line);
 }
 
 /// The text of an excitation; if it is only a function, the author's text.
