@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <optional>
 
-#include "help/manual.hpp"
+#include "help/help_text.hpp"
 #include "notebook/kernel.hpp"
 #include "prompt/arguments.hpp"
 #include "prompt/marking.hpp"

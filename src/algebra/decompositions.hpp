@@ -6,14 +6,13 @@
 #include <memory>
 #include <vector>
 
+#include "text/not_copied.hpp"
+
 namespace dinal::algebra {
 
 /// Solves A x = b for a square matrix A that was factored once.
-class Factored {
+class Factored : text::NotCopied {
 public:
-    Factored() = default;
-    Factored(const Factored&) = delete;
-    Factored& operator=(const Factored&) = delete;
     virtual ~Factored() = default;
     virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const = 0;
 };

@@ -13,7 +13,7 @@ public:
         lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - next) + x : (x - next) + sum_;
         sum_ = next;
     }
-    [[nodiscard]] double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
+    double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
 
 private:
     double sum_ = 0, lost_ = 0;

@@ -89,15 +89,14 @@ public:
         return facts_of(question, map(question), step, Place(x), periods_);
     }
 
-    [[nodiscard]] Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
-                                        const SteadyMotion& /*motion*/) const override {
+    Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap, const SteadyMotion& /*motion*/) const override {
         return Eigen::Vector2d::Constant(PeriodMap::size_of(Place(x), lap.step));
     }
-    [[nodiscard]] double difference() const override { return 1e-6; }
+    double difference() const override { return 1e-6; }
 
 private:
-    [[nodiscard]] double sign() const { return half_ ? -1 : 1; }
-    [[nodiscard]] PeriodMap map(const SteadyQuestion& question) const {
+    double sign() const { return half_ ? -1 : 1; }
+    PeriodMap map(const SteadyQuestion& question) const {
         return half_ ? PeriodMap::half(question, monitor_) : PeriodMap(question, periods_, monitor_);
     }
 
@@ -161,9 +160,7 @@ private:
         Circuit::Lap lap = {};
         Slopes slopes = {};
         SteadyMotion motion = {};
-        [[nodiscard]] Slopes derivative() const {
-            return slopes.leftCols(x.size()) + Slopes::Identity(x.size(), x.size());
-        }
+        Slopes derivative() const { return slopes.leftCols(x.size()) + Slopes::Identity(x.size(), x.size()); }
     };
     using Test = std::function<double(const Spot&)>;
     struct Special {
@@ -196,20 +193,20 @@ private:
         double value = 0;
     };
 
-    [[nodiscard]] Vector scaled(const Spot& spot) const {
+    Vector scaled(const Spot& spot) const {
         Vector y(spot.x.size() + 1);
         y << spot.x.cwiseQuotient(units_), spot.p / range_;
         return y;
     }
     /// The derivatives of the scaled residual with respect to the scaled unknowns.
-    [[nodiscard]] Slopes scaled(const Slopes& slopes) const {
+    Slopes scaled(const Slopes& slopes) const {
         Vector columns(units_.size() + 1);
         columns << units_, range_;
         return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
     }
 
     /// The unit tangent of the curve in the direction of `before`.
-    [[nodiscard]] Vector tangent(const Spot& spot, const Vector& before) const {
+    Vector tangent(const Spot& spot, const Vector& before) const {
         Slopes slopes = scaled(spot.slopes);
         for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
         const algebra::FreeDirection free = algebra::free_direction(slopes);
@@ -220,7 +217,7 @@ private:
         return t * (t.dot(before) < 0 ? -1 : 1);
     }
 
-    [[nodiscard]] Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
+    Vector across() const { return Vector::Unit(units_.size() + 1, units_.size()); }
 
     BranchPath followed(const Spot& first, const Vector& first_ahead) {
         Progress walk{.first = first, .first_ahead = first_ahead, .now = first, .ahead = first_ahead};
@@ -267,7 +264,7 @@ private:
         return path_;
     }
 
-    [[nodiscard]] Step next_step(const Progress& walk) const {
+    Step next_step(const Progress& walk) const {
         const double by_p = walk.ahead[walk.now.x.size()];
         const double target = next_value(walk.now.p, by_p);
         const double left = std::fabs(target - walk.now.p) / range_;
@@ -316,9 +313,8 @@ private:
         if (!turns) return specials;
         const Test slope = [&](const Spot& at) { return tangent(at, moved)[n]; };
         if (auto fold = zero_between(walk.now, spot, ahead[n], on[n], slope)) {
-            const auto after = std::find_if(specials.begin(), specials.end(), [&](const Special& special) {
-                return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0;
-            });
+            const auto after = std::ranges::find_if(
+                specials, [&](const Special& special) { return ahead.dot(scaled(special.spot) - scaled(*fold)) > 0; });
             specials.insert(after, {std::move(*fold), BranchKind::fold});
         }
         return specials;
@@ -340,12 +336,12 @@ private:
     }
 
     /// Returns whether the walk is back at its first point.
-    [[nodiscard]] bool is_closed(const Progress& walk, const Spot& spot, const Vector& on, double length) const {
+    bool is_closed(const Progress& walk, const Spot& spot, const Vector& on, double length) const {
         return !walk.recentred && path_.points.size() > 10 && (scaled(spot) - scaled(walk.first)).norm() < length &&
                on.dot(walk.first_ahead) > straight;
     }
 
-    [[nodiscard]] bool has_vanished(const Spot& spot) const {
+    bool has_vanished(const Spot& spot) const {
         return circuit_.cycles() &&
                circuit_.units(spot.x, spot.lap, spot.motion).cwiseQuotient(greatest_).maxCoeff() < vanishes;
     }
@@ -371,7 +367,7 @@ private:
         return true;
     }
 
-    [[nodiscard]] Vector slope_by_p(const Vector& tangent) const {
+    Vector slope_by_p(const Vector& tangent) const {
         const Eigen::Index n = units_.size();
         return tangent.head(n).cwiseProduct(units_) / (tangent[n] * range_);
     }
@@ -529,7 +525,7 @@ private:
     }
 
     /// The orientation of a tangent relative to the branch; constant along it, also across corners.
-    [[nodiscard]] double orientation(const Slopes& slopes, const Vector& tangent) const {
+    double orientation(const Slopes& slopes, const Vector& tangent) const {
         const Eigen::Index n = units_.size();
         Slopes all(n + 1, n + 1);
         all << scaled(slopes), tangent.transpose();
@@ -623,19 +619,19 @@ private:
             found.push_back({std::move(*zero), kind.kind});
         }
         const Vector here = scaled(spot);
-        std::sort(found.begin(), found.end(), [&](const Special& a, const Special& b) {
+        std::ranges::sort(found, [&](const Special& a, const Special& b) {
             return ahead.dot(scaled(a.spot) - here) < ahead.dot(scaled(b.spot) - here);
         });
         return found;
     }
 
     /// Next requested parameter value after p towards `way`, otherwise the range's end.
-    [[nodiscard]] double next_value(double p, double way) const {
+    double next_value(double p, double way) const {
         if (way > 0) {
-            const auto next = std::upper_bound(values_.begin(), values_.end(), p + slack_);
+            const auto next = std::ranges::upper_bound(values_, p + slack_);
             return next == values_.end() ? values_.back() : *next;
         }
-        const auto next = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+        const auto next = std::ranges::lower_bound(values_, p - slack_);
         return next == values_.begin() ? values_.front() : *(next - 1);
     }
 
@@ -673,7 +669,7 @@ private:
             const auto is_here = [&](const auto& seen) {
                 return seen.first == spot.p && (seen.second - spot.x).cwiseQuotient(units_).norm() < there;
             };
-            met_again_ = met_again_ || std::any_of(seen_.begin(), seen_.end(), is_here);
+            met_again_ = met_again_ || std::ranges::any_of(seen_, is_here);
             seen_.emplace_back(spot.p, spot.x);
         }
         // Points between requested values serve plots only: keep few.
@@ -705,8 +701,8 @@ private:
     }
 
     /// The requested value that equals p to rounding, otherwise p.
-    [[nodiscard]] double value_near(double p) const {
-        const auto near = std::lower_bound(values_.begin(), values_.end(), p - slack_);
+    double value_near(double p) const {
+        const auto near = std::ranges::lower_bound(values_, p - slack_);
         return near != values_.end() && *near <= p + slack_ ? *near : p;
     }
 

@@ -14,6 +14,7 @@
 
 #include "analysis/steady.hpp"
 #include "analysis/steady_facts.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::analysis {
 
@@ -23,7 +24,7 @@ using Family = std::function<SteadyQuestion(double parameter)>;
 struct HeldMode;
 
 /// The map whose fixed points are the motions of a branch, at any parameter value.
-class Circuit {
+class Circuit : text::NotCopied {
 public:
     struct Lap {
         Eigen::VectorXd to;
@@ -34,9 +35,6 @@ public:
         std::shared_ptr<const HeldMode> mode = {};  ///< discrete state at the end, if known
     };
 
-    Circuit() = default;
-    Circuit(const Circuit&) = delete;
-    Circuit& operator=(const Circuit&) = delete;
     virtual ~Circuit() = default;
 
     virtual Lap lap(const Eigen::VectorXd& x, double p) = 0;
@@ -44,10 +42,9 @@ public:
     virtual SteadyMotion motion(const Eigen::VectorXd& x, double p, const Lap& lap,
                                 const Eigen::MatrixXd& derivative) = 0;
     /// The scale of each component of a place.
-    [[nodiscard]] virtual Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap,
-                                                const SteadyMotion& motion) const = 0;
+    virtual Eigen::VectorXd units(const Eigen::VectorXd& x, const Lap& lap, const SteadyMotion& motion) const = 0;
     /// The step of differences, in units.
-    [[nodiscard]] virtual double difference() const { return 1e-5; }
+    virtual double difference() const { return 1e-5; }
     /// Moves the section if the motion has drifted away from it, and returns these places in the new coordinates; empty
     /// if no move is needed or possible.
     virtual std::optional<std::vector<Eigen::VectorXd>> recentred(
@@ -56,18 +53,18 @@ public:
     }
 
     /// For a limit cycle that begins at a rest: the distance of its first place from the rest.
-    [[nodiscard]] virtual Eigen::VectorXd growth() const { return {}; }
+    virtual Eigen::VectorXd growth() const { return {}; }
 
-    [[nodiscard]] const Eigen::VectorXd& first() const { return first_; }
+    const Eigen::VectorXd& first() const { return first_; }
     /// Returns whether the map covers half a period of a symmetric motion.
-    [[nodiscard]] bool is_half() const { return half_; }
+    bool is_half() const { return half_; }
     /// Returns whether it is a rest of an autonomous system, with multipliers over a fixed time.
-    [[nodiscard]] bool stands() const { return stands_; }
+    bool stands() const { return stands_; }
     /// Returns whether it is a limit cycle, which may shrink to a rest.
-    [[nodiscard]] bool cycles() const { return cycles_; }
-    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
+    bool cycles() const { return cycles_; }
+    const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
     /// Returns whether no map can be computed any more, because of Ctrl-C or a failure of M.
-    [[nodiscard]] bool stopped() const { return stopped_; }
+    bool stopped() const { return stopped_; }
 
 protected:
     void note_outcome(model::Outcome outcome, const std::optional<model::Contradiction>& contradiction) {

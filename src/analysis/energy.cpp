@@ -23,7 +23,7 @@ public:
     void add(const Work& work) {
         for (std::size_t i = 0; i < works.size(); ++i) sums_[i].add(work.*works[i]);
     }
-    [[nodiscard]] Work value() const {
+    Work value() const {
         Work work;
         for (std::size_t i = 0; i < works.size(); ++i) work.*works[i] = sums_[i].value();
         return work;
@@ -53,11 +53,11 @@ public:
     Store(const model::Oscillator& oscillator, Whose whose)
         : system_(oscillator), inertia_(whose == Whose::link ? 0 : system_.inertia()) {}
 
-    [[nodiscard]] Stored at(const model::State& y) const {
+    Stored at(const model::State& y) const {
         return {inertia_ * y.velocity * y.velocity / 2,
                 system_.stiffness() * y.theta * y.theta / 2 + system_.spring_energy(y.theta)};
     }
-    [[nodiscard]] Stored change(const model::State& from, const model::State& to) const {
+    Stored change(const model::State& from, const model::State& to) const {
         // Products, as the difference of two large energies would keep their rounding.
         return {inertia_ * ((to.velocity - from.velocity) * (to.velocity + from.velocity)) / 2,
                 system_.stiffness() * ((to.theta - from.theta) * (to.theta + from.theta)) / 2 +
@@ -98,7 +98,7 @@ public:
 private:
     /// Returns whether the stretch ends inside the leg. An end at the next leg's beginning does not count: an impact
     /// lies between, and belongs to the stretch it ended.
-    [[nodiscard]] bool ends_within(const motion::Leg& leg) const {
+    bool ends_within(const motion::Leg& leg) const {
         const double rounding = 4 * std::numeric_limits<double>::epsilon() * std::fabs(stretch_->to);
         return leg.since_start(stretch_->to) + rounding < leg.length();
     }

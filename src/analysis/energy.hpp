@@ -35,7 +35,7 @@ struct EnergyBalance {
         change.spring += done.kept;
     }
     /// The closure error: input - (kinetic + spring + viscous + dry + impacts).
-    [[nodiscard]] double error() const {
+    double error() const {
         const double given = work.belt + work.base + work.acts;
         return work.input + given - work.viscous - work.dry - work.impacts - (change.kinetic + change.spring);
     }
@@ -62,7 +62,7 @@ struct Energy {
     Whose whose = Whose::all;
 
     /// |error| relative to the flow; 0 without any flow.
-    [[nodiscard]] double closure() const;
+    double closure() const;
 };
 
 /// Fails if the run has not kept its motion.

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "analysis/phase_lag.hpp"
-#include "analysis/prose.hpp"
 #include "analysis/recurrence.hpp"
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/part.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -48,7 +48,7 @@ double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool un
 }
 
 /// Builds the text on one body or link, in sentences and paragraphs.
-class Story : protected Prose {
+class Story : protected text::Prose {
 public:
     /// The arguments must outlive the story. `seen` is the joint as a one-body system.
     Story(const RunToTell& whole, std::size_t joint, const model::Oscillator& seen)
@@ -86,7 +86,7 @@ public:
             // otherwise the end is that event
             if (next == end || next->t > s.to + near) events_.push_back(*s.ended_by);
         }
-        std::sort(events_.begin(), events_.end(), [&](const auto& a, const auto& b) { return before(a, b.t); });
+        std::ranges::sort(events_, [&](const auto& a, const auto& b) { return before(a, b.t); });
     }
 
     std::string build_text() {
@@ -104,19 +104,19 @@ public:
     }
 
 private:
-    [[nodiscard]] bool named() const { return whole_.system.named; }
-    [[nodiscard]] std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
+    bool named() const { return whole_.system.named; }
+    std::string name_or(const char* otherwise) const { return named() ? joint_.name : otherwise; }
     /// Returns whether nothing rubs on the joint.
-    [[nodiscard]] bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
+    bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
     /// Returns whether all torques on a standing mass and its friction limit are known.
-    [[nodiscard]] bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
-    [[nodiscard]] std::string at(double t) const { return text::time_text(t, T0_); }
+    bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
+    std::string at(double t) const { return text::time_text(t, T0_); }
     /// The angle at the end of a stretch.
     [[nodiscard]] static std::string place(const Stretch& s) {
         return text::number_text(s.end.theta, std::max(std::fabs(s.begin.theta), std::fabs(s.end.theta)));
     }
     /// Returns whether a torque on a mass at rest equals the limit, within the accuracy of M, k theta and the time.
-    [[nodiscard]] bool at_limit(double torque, const model::Event& event) const {
+    bool at_limit(double torque, const model::Event& event) const {
         const double Re = limit(torque);
         const double known = Re + std::fabs(event.M) + system_.stiffness() * std::fabs(event.theta) +
                              std::fabs(system_.spring().torque(event.theta));
@@ -125,12 +125,12 @@ private:
     }
 
     /// M - k theta minus the torque of other springs, plus the effect of support and belt on a mass at rest.
-    [[nodiscard]] double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
-    [[nodiscard]] double pull_at(double theta, double M, double t) const {
+    double pull(const model::Event& event) const { return pull_at(event.theta, event.M, event.t); }
+    double pull_at(double theta, double M, double t) const {
         return std::fma(-system_.stiffness(), theta, M + around(t) - system_.spring().torque(theta));
     }
     /// The torque of a moving support and belt on a mass at rest, -I a - I vb' - C vb; limits from the right.
-    [[nodiscard]] double around(double t) const {
+    double around(double t) const {
         double torque = on_base_ ? -system_.inertia() * whole_.drive.base.value_after(t) : 0;
         if (!on_belt_) return torque;
         const double rate = motion::belt_slope(belt_, t, motion::belt_stretch * T0_).rate;
@@ -139,14 +139,14 @@ private:
     }
 
     /// Re against a pull in this direction.
-    [[nodiscard]] double limit(double pull) const {
+    double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
     }
     /// "|M - k theta| = 0.155 <= Re = 0.167"
-    [[nodiscard]] std::string reason(double pull) const {
+    std::string reason(double pull) const {
         return fmt::format("|{}| = {}", pull_name(), text::against_limit(std::fabs(pull), limit(pull)));
     }
-    [[nodiscard]] std::string pull_name() const {
+    std::string pull_name() const {
         std::string name = "M";
         if (on_base_) name += " - I a";
         if (on_belt_ && !steady_belt_) name += " - I vb'";
@@ -155,7 +155,7 @@ private:
         return name + (system_.spring().none() ? "" : " - spring");
     }
     /// Returns whether a wall carries the pull at this angle.
-    [[nodiscard]] bool at_wall(double theta) const {
+    bool at_wall(double theta) const {
         const auto& walls = system_.walls();
         return walls && (theta == walls->lower || theta == walls->upper);
     }
@@ -189,7 +189,7 @@ private:
             run_.initial.theta);
         const auto redundant = motion::engine::redundant_rigid(whole_.system);
         const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
-        if (std::find(redundant.begin(), redundant.end(), own) != redundant.end()) {
+        if (std::ranges::find(redundant, own) != redundant.end()) {
             say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
                 "with the least sum of squares are given.");
         }
@@ -230,7 +230,7 @@ private:
         add("; the hardest impact had velocity {:.5g}, at t = {}.", hardest->velocity, at(hardest->t));
     }
 
-    [[nodiscard]] std::string slip_from_wall(const model::Event& event) const {
+    std::string slip_from_wall(const model::Event& event) const {
         if (!has_reasons()) return "it left the wall";
         const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
         if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
@@ -239,7 +239,7 @@ private:
     }
 
     /// Returns whether M is constant throughout the run.
-    [[nodiscard]] bool free() const { return constant_from_ <= run_.t_start; }
+    bool free() const { return constant_from_ <= run_.t_start; }
 
     // ---- beginning and course
 
@@ -307,7 +307,7 @@ private:
         }
     }
 
-    [[nodiscard]] std::string friction_text() const {
+    std::string friction_text() const {
         const model::Friction& law = system_.friction();
         const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
         const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
@@ -382,9 +382,8 @@ private:
                              : "It moved in one direction all the time.");
             return;
         }
-        const auto turns = static_cast<std::size_t>(std::count_if(swings_.begin(), swings_.end(), [](const Stretch& s) {
-            return s.ended_by && s.ended_by->kind == model::EventKind::turn;
-        }));
+        const auto turns = static_cast<std::size_t>(std::ranges::count_if(
+            swings_, [](const Stretch& s) { return s.ended_by && s.ended_by->kind == model::EventKind::turn; }));
         say("It made {} with {} and {}", text::counted(half_cycles_, "half cycle"), text::counted(turns, "turn"),
             text::counted(stops_.size(), "stop"));
         if (stuck_ > 0) {
@@ -421,7 +420,7 @@ private:
         for (const model::Event& event : run_.events) {
             if (event.kind == slide_begins) from = event.t, slides = true;
             if (event.kind == slide_ends && (slides || !any)) {
-                const bool stops = std::any_of(run_.events.begin(), run_.events.end(), [&](const model::Event& other) {
+                const bool stops = std::ranges::any_of(run_.events, [&](const model::Event& other) {
                     return other.t == event.t && (other.kind == stick || other.kind == rest || other.kind == impact);
                 });
                 add_slide(event.t, stops ? "; then a contact or a wall stopped it" : "; then one side no longer did");
@@ -537,7 +536,7 @@ private:
 
     /// Explains why and in which direction it slipped. `has_torque`: a sentence about |M - k theta| precedes
     /// ("this torque").
-    [[nodiscard]] std::string slip(const model::Event& event, bool has_torque) const {
+    std::string slip(const model::Event& event, bool has_torque) const {
         if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
         if (!has_reasons()) return "it slipped";
@@ -595,7 +594,7 @@ private:
         }
     }
 
-    [[nodiscard]] bool held_at_most() const {
+    bool held_at_most() const {
         return model::cannot_break_away(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
     }
 
@@ -704,7 +703,7 @@ private:
 };
 
 /// Builds the text on the whole system around those on its bodies and links.
-class WholeStory : protected Prose {
+class WholeStory : protected text::Prose {
 public:
     explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
@@ -727,8 +726,8 @@ public:
     }
 
 private:
-    [[nodiscard]] std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
-    [[nodiscard]] const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
+    std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
+    const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
 
     void tell_setting() {
         const std::size_t n = system_.bodies.size(), links = system_.joints.size() - n;
@@ -785,7 +784,7 @@ private:
         note(whole.total.work.acts, "acts at events");
         note(-whole.total.change.kinetic - whole.total.change.spring, "stored energy");
         for (auto* list : {&given, &taken}) {
-            std::sort(list->begin(), list->end(), [](const Share& a, const Share& b) { return a.value > b.value; });
+            std::ranges::sort(*list, std::ranges::greater{}, &Share::value);
             const double all = std::accumulate(list->begin(), list->end(), 0.0,
                                                [](double so_far, const Share& share) { return so_far + share.value; });
             std::string text;

@@ -33,7 +33,7 @@ MeasuredAngles::MeasuredAngles(const IdentifyQuestion& question)
       span(question.t.back() - question.t.front()),
       noise(noise_of(question.theta)),
       step(step_of_instrument(question.theta)) {
-    std::copy(question.theta.begin(), question.theta.end(), theta.data());
+    std::ranges::copy(question.theta, theta.data());
     range = theta.maxCoeff() - theta.minCoeff();
     turns = turning_points(question.theta, std::clamp(6 * noise, 0.04 * range, 0.4 * range));
 }
@@ -60,7 +60,7 @@ Parameters FitStarts::completed(double omega0, double zeta, double dry, double z
     at(p, Unknown::Re) = question_.given_or(Unknown::Re, at(p, Unknown::Rd));
     at(p, Unknown::offset) = question_.given_or(Unknown::offset, zero);
     const double a_while = 0.15 / omega0;  // the motion is nearly straight for this time
-    const auto bent = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + a_while);
+    const auto bent = std::ranges::upper_bound(question_.t, question_.t.front() + a_while);
     const Tangent tangent =
         first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
     at(p, Unknown::theta0) = question_.given_or(Unknown::theta0, tangent.value - at(p, Unknown::offset));
@@ -156,8 +156,7 @@ Parameters FitStarts::weak_form() const {
     const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < 5; ++c) {
-        const bool known =
-            c < 4 ? question_.gives(order[c]) : question_.given[static_cast<std::size_t>(Unknown::offset)] == 0.0;
+        const bool known = c < 4 ? question_.gives(order[c]) : at(question_.given, Unknown::offset) == 0.0;
         if (!known) columns.push_back(c);
     }
     const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());

@@ -14,21 +14,14 @@ namespace dinal::analysis {
 /// A value for each unknown, fitted or given.
 using Parameters = std::array<double, unknown_count>;
 
-inline double& at(Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
-inline double at(const Parameters& p, Unknown which) {
-    return p[static_cast<std::size_t>(which)];
-}
-
 /// The measured angles, with properties that need no model.
 struct MeasuredAngles {
     explicit MeasuredAngles(const IdentifyQuestion& question);
 
     /// Returns whether the last samples are equal to within noise.
-    [[nodiscard]] bool ends_at_rest() const;
+    bool ends_at_rest() const;
     /// The natural frequency of one full swing per sample.
-    [[nodiscard]] double highest_omega0() const;
+    double highest_omega0() const;
 
     Eigen::VectorXd theta;
     CutOff cut;
@@ -43,16 +36,16 @@ class FitStarts {
 public:
     FitStarts(const IdentifyQuestion& question, const MeasuredAngles& record) : question_(question), record_(record) {}
 
-    [[nodiscard]] std::vector<Parameters> all() const { return question_.M ? forced() : free(); }
+    std::vector<Parameters> all() const { return question_.M ? forced() : free(); }
     /// Solves the weak form of the driven equation; falls back on the scales of the record.
-    [[nodiscard]] Parameters weak_form() const;
+    Parameters weak_form() const;
     /// Completes the values by the first angles of the record. `dry` is Rd/k, `zero` the offset.
-    [[nodiscard]] Parameters completed(double omega0, double zeta, double dry, double zero) const;
+    Parameters completed(double omega0, double zeta, double dry, double zero) const;
 
 private:
-    [[nodiscard]] std::vector<Parameters> free() const;
-    [[nodiscard]] std::vector<Parameters> forced() const;
-    [[nodiscard]] Parameters start_of(double q, double dry, double omega1) const;
+    std::vector<Parameters> free() const;
+    std::vector<Parameters> forced() const;
+    Parameters start_of(double q, double dry, double omega1) const;
     void add_window(std::size_t first, std::size_t last, double sign, std::vector<std::array<double, 6>>& rows) const;
 
     const IdentifyQuestion& question_;

@@ -5,15 +5,63 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/closed_search.hpp"
+#include "analysis/map.hpp"
 #include "analysis/steady.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::analysis {
 
-class ForcedSearch {
+/// Finds a place to which a map returns: by Newton's method, from a start or from successive returns that come near to
+/// themselves.
+class ClosedSearch {
 public:
-    ForcedSearch(const ForcedSearch&) = delete;
-    ForcedSearch& operator=(const ForcedSearch&) = delete;
+    using Return = Map::Return;
+    /// `maps` is increased by the number of returns computed; `longest` is the greatest number of returns after which a
+    /// motion may close.
+    ClosedSearch(Map& map, int& maps, int longest) : map_(map), maps_(maps), longest_(longest) {}
+
+    /// Tries Newton's method from `from` for motions that close after `returns`. If `waits`, returns are computed when
+    /// no Newton step helps, because each is closer in a contracting system.
+    std::optional<Closed> at_once(const Return& from, int returns, bool waits);
+
+    /// Makes returns until the motion closes; checks after each of `counts`.
+    std::optional<Closed> follow(Return first, const std::vector<int>& counts);
+
+    const std::vector<Return>& seen() const { return seen_; }
+    std::optional<model::Outcome> failed() const { return failed_; }
+
+private:
+    /// A place, and its return.
+    struct Try {
+        Eigen::VectorXd x;
+        std::optional<HeldMode> mode;
+        Return back;
+        Eigen::VectorXd off = {};
+        double residual = 0;
+        bool keeps_mode() const { return back.mode == mode; }
+    };
+
+    std::optional<Closed> closes(double near);
+    Closed shortest(Closed found);
+    bool approaches(const Eigen::VectorXd& x, std::size_t m) const;
+    std::optional<Closed> itself(const Return& from, int m);
+    std::optional<Closed> newton(const Return& from, int m, double farthest, bool waits);
+    std::optional<Try> at(const Eigen::VectorXd& x, const std::optional<HeldMode>& mode, int m);
+    /// Tries fractions of a Newton step; empty if none reduces the residual.
+    std::optional<Try> nearer(const Try& now, const Eigen::VectorXd& step, int m);
+    bool is_within(double residual, double tolerance) const {
+        return residual <= tolerance || residual <= map_.rounding();
+    }
+
+    Map& map_;
+    int& maps_;
+    int longest_;
+    std::vector<Return> seen_;
+    std::optional<model::Outcome> failed_;
+};
+
+class ForcedSearch : text::NotCopied {
+public:
     virtual ~ForcedSearch() = default;
 
 protected:
@@ -32,24 +80,24 @@ protected:
     /// Returns a later place with the scale of the motion there.
     virtual std::optional<Map::Return> measured(const Map::Return& from) = 0;
     /// The range of the last measured period.
-    [[nodiscard]] virtual double range() const = 0;
+    virtual double range() const = 0;
     /// The size of a motion at this place.
-    [[nodiscard]] virtual double size_at(const Map::Return& place) const = 0;
+    virtual double size_at(const Map::Return& place) const = 0;
     /// Completes the answer for a closed motion. Returns false if it does not qualify, or is unstable and `any` is
     /// false.
     virtual bool complete(const Closed& found, bool any) = 0;
     /// Returns whether every motion stays bounded.
-    [[nodiscard]] virtual bool is_bounded() const = 0;
+    virtual bool is_bounded() const = 0;
     /// Returns whether nothing restores the angle, which may then drift for ever and counts as growing.
-    [[nodiscard]] virtual bool is_free() const = 0;
+    virtual bool is_free() const = 0;
 
     SteadyMotion facts_;
 
 private:
-    [[nodiscard]] double growth_of(const std::vector<Map::Return>& seen) const;
+    double growth_of(const std::vector<Map::Return>& seen) const;
     void note_failure(model::Outcome outcome, const std::vector<Map::Return>& seen);
     /// The greatest size among the places `from` to `until` - 1.
-    [[nodiscard]] double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
+    double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
 };
 
 }  // namespace dinal::analysis

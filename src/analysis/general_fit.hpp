@@ -36,7 +36,7 @@ struct GeneralFit {
     bool noise_is_uneven = false;             ///< whether errors are wider because noise is stronger where it matters
     std::optional<Misfit> misfit = {};
 
-    [[nodiscard]] bool is_wrong() const { return misfit && misfit->is_sure; }
+    bool is_wrong() const { return misfit && misfit->is_sure; }
 };
 
 /// Empty if the model has no prediction at the start.

@@ -12,7 +12,6 @@
 
 #include "algebra/decompositions.hpp"
 #include "analysis/fit_starts.hpp"
-#include "analysis/free_decay.hpp"
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
 #include "analysis/missing_torques.hpp"
@@ -75,7 +74,7 @@ struct Decay {
     double zeta = 0, shift = 0;
 
     /// The amplitude at a turn at which the mass may be made to rest; negative if the turn lies beyond the middle.
-    [[nodiscard]] double size_at(double turn) const {
+    double size_at(double turn) const {
         const double theta = theory::HalfCycles(zeta, shift).after(turn, first.theta);
         const bool below = (first.theta < 0) != (std::fmod(turn, 2) != 0);
         return below ? -theta : theta;
@@ -126,31 +125,29 @@ public:
 
 private:
     void choose_unknowns() {
-        std::copy_if(all_unknowns.begin(), all_unknowns.end(), std::back_inserter(unknowns_),
-                     [this](Unknown which) { return is_sought(question_, which); });
+        std::ranges::copy_if(all_unknowns, std::back_inserter(unknowns_),
+                             [this](Unknown which) { return is_sought(question_, which); });
         seeks_Re_ = is_sought(question_, Unknown::Re);
     }
 
-    [[nodiscard]] Parameters filled(const Eigen::VectorXd& p) const {
+    Parameters filled(const Eigen::VectorXd& p) const {
         Parameters all = base_;
         for (std::size_t i = 0; i < unknowns_.size(); ++i) at(all, unknowns_[i]) = p[static_cast<Eigen::Index>(i)];
         if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
         return all;
     }
     /// Extracts the fitted parameters. Re is fitted as Re - Rd, because values below Rd have no effect.
-    [[nodiscard]] Eigen::VectorXd fitted_of(const Parameters& all) const {
+    Eigen::VectorXd fitted_of(const Parameters& all) const {
         Eigen::VectorXd p(count());
         for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
         if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, at(all, Unknown::Re) - at(all, Unknown::Rd));
         return p;
     }
-    [[nodiscard]] Eigen::Index place_of(Unknown which) const {
-        return std::find(unknowns_.begin(), unknowns_.end(), which) - unknowns_.begin();
-    }
+    Eigen::Index place_of(Unknown which) const { return std::ranges::find(unknowns_, which) - unknowns_.begin(); }
 
     /// Returns whether the record resolves the motion: each swing has samples, and the initial velocity is not too
     /// high. A search may leave this region, where runs take too long and fits are meaningless.
-    [[nodiscard]] bool is_seen(const Parameters& p) const {
+    bool is_seen(const Parameters& p) const {
         const double highest = record_.highest_omega0();
         constexpr double most = 10;  // ranges of the record between two samples
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
@@ -163,7 +160,7 @@ private:
     [[nodiscard]] std::optional<Eigen::VectorXd> predicted(const Parameters& p, std::size_t rows) {
         return shown(moved(p, rows));
     }
-    [[nodiscard]] std::optional<Eigen::VectorXd> shown(std::optional<Eigen::VectorXd> theta) const {
+    std::optional<Eigen::VectorXd> shown(std::optional<Eigen::VectorXd> theta) const {
         if (theta && record_.cut.at_low > 0) *theta = theta->cwiseMax(record_.cut.low);
         if (theta && record_.cut.at_high > 0) *theta = theta->cwiseMin(record_.cut.high);
         return theta;
@@ -180,9 +177,10 @@ private:
             std::optional<double> rests_at = rests_at_;
             if (rests_at) *rests_at -= turns_before(p);
             if (rests_at && *rests_at < 0) return {};
-            Eigen::VectorXd decay = free_decay(*system, initial, std::span(question_.t).first(rows), rests_at);
-            decay.array() += at(p, Unknown::offset);
-            return decay.allFinite() ? std::optional(std::move(decay)) : std::nullopt;
+            Eigen::VectorXd theta(static_cast<Eigen::Index>(rows));
+            theory::free_decay(*system, initial, std::span(question_.t).first(rows), rests_at, {theta.data(), rows});
+            theta.array() += at(p, Unknown::offset);
+            return theta.allFinite() ? std::optional(std::move(theta)) : std::nullopt;
         }
         const auto run = driven(*system, *question_.M, initial, rows);
         if (!run) return {};
@@ -205,7 +203,7 @@ private:
         return std::move(run).value();
     }
 
-    [[nodiscard]] std::optional<model::Oscillator> system_of(const Parameters& p) const {
+    std::optional<model::Oscillator> system_of(const Parameters& p) const {
         model::OscillatorParameters parts;
         parts.inertia = at(p, Unknown::I);
         parts.stiffness = at(p, Unknown::k);
@@ -221,7 +219,7 @@ private:
         return system ? std::optional(*system) : std::nullopt;
     }
 
-    [[nodiscard]] FitScale scale_of(const Parameters& start) const {
+    FitScale scale_of(const Parameters& start) const {
         FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
                        Eigen::VectorXd::Zero(count())};
         const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
@@ -315,12 +313,12 @@ private:
 
     /// The numbers of samples to fit, one after another. Each fit starts from that of a shorter part, so no swing is
     /// mistaken for its neighbour. A free decay ends at its last turn, after which it may rest.
-    [[nodiscard]] std::vector<std::size_t> stages(double period) const {
+    std::vector<std::size_t> stages(double period) const {
         std::vector<std::size_t> rows;
         const double first = question_.t.front();
         double length = 2.2 * period;
         while (first + length < question_.t.back()) {
-            const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), first + length);
+            const auto until = std::ranges::upper_bound(question_.t, first + length);
             rows.push_back(static_cast<std::size_t>(until - question_.t.begin()));
             if (!question_.M) break;
             length *= 2;
@@ -336,17 +334,15 @@ private:
         return least_squares(model, record_.theta.head(static_cast<Eigen::Index>(rows)), p, scale, steps);
     }
 
-    [[nodiscard]] double deviation() const {
+    double deviation() const {
         const auto told =
             record_.theta.size() - static_cast<Eigen::Index>(record_.cut.at_low + record_.cut.at_high) - count();
         return std::sqrt(best_->sum / static_cast<double>(std::max<Eigen::Index>(1, told)));
     }
     /// Returns whether the residual is no larger than the noise, whose estimate is accurate to a few percent for such a
     /// record.
-    [[nodiscard]] bool is_settled() const {
-        return deviation() <= std::max(1.06 * record_.noise, 1e-9 * record_.range);
-    }
-    [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
+    bool is_settled() const { return deviation() <= std::max(1.06 * record_.noise, 1e-9 * record_.range); }
+    Eigen::Index count() const { return static_cast<Eigen::Index>(unknowns_.size()); }
 
     // ---- the turn at which a free decay comes to rest
     //
@@ -389,7 +385,7 @@ private:
 
     /// A turn near the start has number 0, whether it comes just after or just before it. So the numbers do not change
     /// if the fitted initial velocity, nearly 0, changes its sign.
-    [[nodiscard]] double turns_before(const Parameters& p) const {
+    double turns_before(const Parameters& p) const {
         return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
     }
 
@@ -422,7 +418,7 @@ private:
         }
         breakaway_ = best_breakaway_;
         const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
-        if (std::none_of(rests_.begin(), rests_.end(), is_it)) rests_.push_back(rest);
+        if (std::ranges::none_of(rests_, is_it)) rests_.push_back(rest);
         return breakaway ? sum : std::numeric_limits<double>::infinity();
     }
 
@@ -446,7 +442,7 @@ private:
     }
 
     /// The Re/k that makes a free decay rest at this turn and not earlier; 0 if Rd does, empty if no value does.
-    [[nodiscard]] std::optional<double> holding(const Parameters& p, double turn) const {
+    std::optional<double> holding(const Parameters& p, double turn) const {
         const auto decay = std::isfinite(turn) ? decay_of(p) : std::nullopt;
         turn -= turns_before(p);
         if (!decay || turn < 0) return {};
@@ -516,7 +512,7 @@ private:
             return p;
         };
         const double half = std::numbers::pi * std::sqrt(at(best, Unknown::I) / at(best, Unknown::k));
-        const auto until = std::upper_bound(question_.t.begin(), question_.t.end(), question_.t.front() + half);
+        const auto until = std::ranges::upper_bound(question_.t, question_.t.front() + half);
         constexpr std::ptrdiff_t least_rows = 8;
         const auto rows = static_cast<std::size_t>(std::max(until - question_.t.begin(), least_rows));
         const Prediction model = [&](const Eigen::VectorXd& q) { return predicted(with(q), rows); };
@@ -530,7 +526,7 @@ private:
             auto one = least_squares(model, record_.theta.head(head), q, of_first, steps);
             if (one) found.push_back(std::move(*one));
         }
-        std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.sum < b.sum; });
+        std::ranges::sort(found, [](const auto& a, const auto& b) { return a.sum < b.sum; });
         const double told = best_->residual.head(head).squaredNorm();
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, found.size()) && !stopped_; ++i) {
@@ -560,7 +556,7 @@ private:
             sums.emplace_back((record_.theta - *theta).squaredNorm(), at(p, Unknown::Re));
             seen_.emplace_back(sums.back().first, p);
         }
-        std::sort(sums.begin(), sums.end());
+        std::ranges::sort(sums);
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, sums.size()) && !stopped_; ++i) {
             Parameters p = best;
@@ -629,7 +625,7 @@ private:
                 }
             }
         }
-        std::sort(looks.begin(), looks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+        std::ranges::sort(looks, [](const auto& a, const auto& b) { return a.first < b.first; });
         constexpr std::size_t tries = 8;
         for (std::size_t i = 0; i < std::min(tries, looks.size()); ++i) {
             if (!stopped_ && leaves_pattern(suspected)) try_from(looks[i].second);
@@ -665,7 +661,7 @@ private:
         if (!freest_) freest_ = best;
         best_ = without;
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
-        tells_nothing_[static_cast<std::size_t>(which)] = is_flat;
+        at(tells_nothing_, which) = is_flat;
         if (is_flat && which == Unknown::velocity0 && !question_.gives(Unknown::theta0)) see_short_beginnings();
     }
 
@@ -713,7 +709,7 @@ private:
 
     /// A lower bound of the standard error: for a parabolic sum of squares, each sampled motion that fits nearly as
     /// well indicates one.
-    [[nodiscard]] double least_error(const std::function<double(const Parameters&)>& value) const {
+    double least_error(const std::function<double(const Parameters&)>& value) const {
         const double noise = deviation(), best = value(best_filled_);
         constexpr double possible = 16;
         double least = 0;
@@ -727,7 +723,7 @@ private:
     // ---- probability of each way to rest
 
     /// The turn at which the motion rests, or after which it is too small to be seen.
-    [[nodiscard]] std::optional<double> resting_turn(const Parameters& p, double noise) const {
+    std::optional<double> resting_turn(const Parameters& p, double noise) const {
         const auto system = question_.M ? std::nullopt : system_of(p);
         if (!system || !theory::Modes(system->damping_ratio()).swings()) return {};
         const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
@@ -800,9 +796,7 @@ private:
     // ---- signs of a wrong model
 
     /// Returns whether the residual is rounding, of the motion or of an instrument.
-    [[nodiscard]] bool is_rounding() const {
-        return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step();
-    }
+    bool is_rounding() const { return !(deviation() > least_noise * record_.range) || stopped_ || is_within_a_step(); }
 
     /// The changes of the best fit, with `run` as its motion, that each possibly missing torque would cause.
     [[nodiscard]] std::optional<Eigen::MatrixXd> responses_at_best(const model::Oscillator& system,
@@ -851,13 +845,13 @@ private:
 
     /// Returns whether the residual is within half a step of the instrument, which correlates errors if the motion is
     /// slow.
-    [[nodiscard]] bool is_within_a_step() const {
+    bool is_within_a_step() const {
         constexpr double part = 0.5;
         return deviation() < part * record_.step;
     }
     /// The noise that determines the errors. Rounding to steps does not show in a resting mass, as the fitted zero
     /// absorbs it.
-    [[nodiscard]] double noise_of_errors() const {
+    double noise_of_errors() const {
         return is_within_a_step() ? std::max(deviation(), record_.step / std::sqrt(12.0)) : deviation();
     }
 
@@ -870,7 +864,7 @@ private:
         if (!question_.M && !question_.gives(Unknown::Re)) {
             at(found.value, Unknown::Re) =
                 std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
-            found.silent[static_cast<std::size_t>(Unknown::Re)] = true;
+            at(found.silent, Unknown::Re) = true;
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
@@ -909,7 +903,7 @@ private:
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
                 ratio->error = ratio->cautious = 0;
             }
-            for (const Unknown which : unknowns_) found.silent[static_cast<std::size_t>(which)] = true;
+            for (const Unknown which : unknowns_) at(found.silent, which) = true;
             found.low.fill(-model::never), found.high.fill(model::never);
         }
         const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
@@ -949,9 +943,9 @@ private:
 
     /// The covariances of the parameters if friction may fall with the speed, by up to Rd, or the spring may be
     /// nonlinear: one for each of these torques.
-    [[nodiscard]] std::vector<Eigen::MatrixXd> cautious(std::span<const Structure> lacking, const Eigen::MatrixXd& J,
-                                                        const NoiseMemory& memory, const Eigen::MatrixXd& remembered,
-                                                        const Eigen::MatrixXd& covariance, double noise) const {
+    std::vector<Eigen::MatrixXd> cautious(std::span<const Structure> lacking, const Eigen::MatrixXd& J,
+                                          const NoiseMemory& memory, const Eigen::MatrixXd& remembered,
+                                          const Eigen::MatrixXd& covariance, double noise) const {
         std::vector<Eigen::MatrixXd> all;
         const Eigen::VectorXd whole = scale_of(best_filled_).whole;
         const auto add = [&](const Eigen::VectorXd& term, double size) {
@@ -991,7 +985,7 @@ private:
     }
 
     /// The covariance matrix of all unknowns from that of the fitted ones.
-    [[nodiscard]] Eigen::MatrixXd full_of(const Eigen::MatrixXd& covariance) const {
+    Eigen::MatrixXd full_of(const Eigen::MatrixXd& covariance) const {
         Eigen::MatrixXd full = Eigen::MatrixXd::Zero(unknown_count, unknown_count);
         const auto place = [&](Eigen::Index i) {
             return static_cast<Eigen::Index>(unknowns_[static_cast<std::size_t>(i)]);
@@ -1009,10 +1003,10 @@ private:
 
     void set_errors(const Eigen::MatrixXd& full, double spread, Identified& found) const {
         for (const Unknown which : unknowns_) {
-            const auto i = static_cast<std::size_t>(which);
             const auto place = static_cast<Eigen::Index>(which);
             const double open = least_error([which](const Parameters& p) { return at(p, which); });
-            found.error[i] = found.silent[i] ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
+            at(found.error, which) =
+                at(found.silent, which) ? 0 : std::max(open, spread * std::sqrt(full(place, place)));
         }
         ratios(full, spread, found);
     }
@@ -1021,12 +1015,12 @@ private:
 
     void set_bounds(Unknown which, double spread, const Eigen::MatrixXd& covariance, const std::vector<bool>& open,
                     Identified& found) {
-        const auto i = static_cast<std::size_t>(which);
-        if (!found.silent[i]) return;
-        double &low = found.low[i] = found.value[i], &high = found.high[i] = found.value[i];
+        if (!at(found.silent, which)) return;
+        double &low = at(found.low, which) = at(found.value, which),
+               &high = at(found.high, which) = at(found.value, which);
         if (which == Unknown::Re && !question_.M) {
             std::tie(low, high) = breakaways();
-        } else if (tells_nothing_[i]) {
+        } else if (at(tells_nothing_, which)) {
             constexpr double equally_good = 4;  // two standard errors
             for (const auto& [sum, p] : seen_) {
                 if (sum > best_->sum + equally_good * spread * spread) continue;
@@ -1066,7 +1060,7 @@ private:
     }
 
     /// The range of Re of a free decay: Re holds the mass where it rests, but not at the previous turn.
-    [[nodiscard]] std::pair<double, double> breakaways() const {
+    std::pair<double, double> breakaways() const {
         const double k = at(best_filled_, Unknown::k), Rd = at(best_filled_, Unknown::Rd);
         const auto decay = decay_of(best_filled_);
         if (!decay) return {Rd, INFINITY};
@@ -1080,7 +1074,7 @@ private:
 
     /// Returns whether neighbours in the residual are more alike than in white noise. In white noise the mean square of
     /// differences is twice the mean square, with a standard deviation of 2/sqrt(n).
-    [[nodiscard]] bool leaves_pattern(double deviations) const {
+    bool leaves_pattern(double deviations) const {
         const Eigen::VectorXd& left = best_->residual;
         const Eigen::Index n = left.size() - 1;
         const double ratio = (left.tail(n) - left.head(n)).squaredNorm() / left.squaredNorm();
@@ -1088,7 +1082,7 @@ private:
     }
 
     /// Returns whether the residual is noise with a memory of one step.
-    [[nodiscard]] bool has_only_memory(const Eigen::MatrixXd& J) const {
+    bool has_only_memory(const Eigen::MatrixXd& J) const {
         const std::vector<int> columns(question_.t.size(), 0);
         const NoiseMemory memory(best_->residual, columns, J, 1);
         const Eigen::MatrixXd white = memory.whitened(best_->residual);
@@ -1175,8 +1169,8 @@ private:
 
 text::Expected<Identified> identify(const IdentifyQuestion& question, const motion::Monitor& monitor) {
     const std::size_t n = question.t.size();
-    const auto unknowns = static_cast<std::size_t>(std::count_if(
-        all_unknowns.begin(), all_unknowns.end(), [&](Unknown which) { return is_sought(question, which); }));
+    const auto unknowns = static_cast<std::size_t>(
+        std::ranges::count_if(all_unknowns, [&](Unknown which) { return is_sought(question, which); }));
     const std::size_t least = std::max<std::size_t>(8, unknowns + 1);
     if (n < least || question.theta.size() != n) {
         return text::Error{
@@ -1193,7 +1187,7 @@ text::Expected<Identified> identify(const IdentifyQuestion& question, const moti
                             i + 1, question.t[i], i, question.t[i - 1])};
         }
     }
-    const auto [low, high] = std::minmax_element(question.theta.begin(), question.theta.end());
+    const auto [low, high] = std::ranges::minmax_element(question.theta);
     if (*low == *high) {
         return text::Error{fmt::format("nothing moves in the record: all samples are {:.6g}", *low)};
     }

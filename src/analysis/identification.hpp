@@ -24,16 +24,20 @@ inline constexpr int unknown_count = 8;
 inline constexpr std::array<std::string_view, unknown_count> unknown_names{"I",  "k",      "C",         "Rd",
                                                                            "Re", "theta0", "velocity0", "offset"};
 
+/// The entry for this parameter in a list of all.
+template <class List>
+auto& at(List& all, Unknown which) {
+    return all[static_cast<std::size_t>(which)];
+}
+
 struct IdentifyQuestion {
     std::vector<double> t, theta;  ///< times increase; at least eight samples, and as many as unknowns
     /// none: a free decay, which determines ratios only: I = 1 unless I or k is given
     std::optional<model::Excitation> M = {};
     std::array<std::optional<double>, unknown_count> given = {};  ///< values of parameters that are not fitted
 
-    [[nodiscard]] bool gives(Unknown which) const { return given[static_cast<std::size_t>(which)].has_value(); }
-    [[nodiscard]] double given_or(Unknown which, double otherwise) const {
-        return given[static_cast<std::size_t>(which)].value_or(otherwise);
-    }
+    bool gives(Unknown which) const { return at(given, which).has_value(); }
+    double given_or(Unknown which, double otherwise) const { return at(given, which).value_or(otherwise); }
 };
 
 struct IdentifiedRatio {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "model/event.hpp"
-#include "model/outcome.hpp"
 #include "motion/engine/run.hpp"
 
 namespace dinal::analysis {
@@ -50,7 +49,7 @@ public:
     virtual std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode,
                                                  int returns, int order) = 0;
     /// The rounding of a place; may exceed the digits of a tiny motion.
-    [[nodiscard]] virtual double rounding() const { return 0; }
+    virtual double rounding() const { return 0; }
 };
 
 /// A motion that closes after some returns.

@@ -20,7 +20,7 @@ public:
     explicit Products(const Eigen::MatrixXd& all) : left_(all.transpose() * all), whole_(left_.diagonal()) {}
 
     /// The fraction of a column's length that is orthogonal to the eliminated columns.
-    [[nodiscard]] double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
+    double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
     [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const { return left_(i, j); }
     void take_out(Eigen::Index i) {
         constexpr double dependent = 1e-6;
@@ -29,7 +29,7 @@ public:
         left_ -= column * (column.transpose() / column[i]);
         ++taken_;
     }
-    [[nodiscard]] int taken() const { return taken_; }
+    int taken() const { return taken_; }
 
 private:
     Eigen::MatrixXd left_;
@@ -103,8 +103,8 @@ public:
     }
 
     /// The significance of the first term, in standard deviations of chance; 0 if there is none.
-    [[nodiscard]] double most() const { return most_; }
-    [[nodiscard]] const std::vector<Eigen::Index>& found() const { return found_; }
+    double most() const { return most_; }
+    const std::vector<Eigen::Index>& found() const { return found_; }
 
 private:
     /// The products of slopes, terms, faster terms and, last, the residual, filtered if the residual has a memory.
@@ -121,7 +121,7 @@ private:
     }
 
     /// The significance of a column in the residual, in standard deviations.
-    [[nodiscard]] double score(Eigen::Index i) const {
+    double score(Eigen::Index i) const {
         constexpr double least_own_share = 0.02, least_spare = 8;
         if (!(products_.own(i) > least_own_share)) return 0;
         const double along = products_(i, last_), square = along * along / products_(i, i);
@@ -186,12 +186,12 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind
     }
     if (found.empty()) return {};
     const auto better = [](const Found& a, const Found& b) { return a.search.most() > b.search.most(); };
-    std::sort(found.begin(), found.end(), better);
+    std::ranges::sort(found, better);
     const Found& best = found.front();
     Misfit worst{.follows = {best.structure->what}};
     const double odds = 2 * std::log(20.0);
     for (const Found& other : found) {
-        const bool is_told = std::count(worst.follows.begin(), worst.follows.end(), other.structure->what) > 0;
+        const bool is_told = std::ranges::count(worst.follows, other.structure->what) > 0;
         if (is_told || best.search.most() * best.search.most() > other.search.most() * other.search.most() + odds)
             continue;
         worst.follows.push_back(other.structure->what);
@@ -240,7 +240,7 @@ double smallest_step(std::span<const double> values) {
 double step_of_instrument(std::span<const double> values) {
     const double step = smallest_step(values);
     constexpr double rounding = 1e-6;
-    const bool is_even = std::all_of(values.begin(), values.end(), [&](double x) {
+    const bool is_even = std::ranges::all_of(values, [&](double x) {
         const double steps = (x - values.front()) / step;
         return std::fabs(steps - std::round(steps)) < rounding * std::max(1.0, std::fabs(steps));
     });

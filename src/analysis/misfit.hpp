@@ -40,10 +40,10 @@ struct Misfit {
 
     /// The parameters are not corrected, so their error includes the whole shift, multiplied by the root of 2 as a
     /// margin.
-    [[nodiscard]] Eigen::MatrixXd added_covariance() const { return 2 * shift * shift.transpose(); }
+    Eigen::MatrixXd added_covariance() const { return 2 * shift * shift.transpose(); }
     /// Returns whether errors remain meaningful: beyond a third of the residual the first-order estimate says too
     /// little about the parameters.
-    [[nodiscard]] bool leaves_errors() const { return share < 1.0 / 3; }
+    bool leaves_errors() const { return share < 1.0 / 3; }
 };
 
 struct NoiseKind {

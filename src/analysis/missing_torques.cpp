@@ -34,7 +34,7 @@ public:
           M_(M),
           omega0_(system.natural_frequency()) {}
 
-    [[nodiscard]] const Row& angle() const { return angle_; }
+    const Row& angle() const { return angle_; }
 
     /// Advances by h, while the torques change linearly.
     void move(double h, const Row& from, const Row& to) {

@@ -29,9 +29,9 @@ public:
     /// Scales the torques by the greatest angle and velocity of this motion.
     MissingTorques(std::span<const double> theta, std::span<const double> velocity);
     /// `way` is the sign of the velocity, at a turn that before or after it, and 0 for a mass at rest.
-    [[nodiscard]] Row at(double theta, double velocity, double way) const;
+    Row at(double theta, double velocity, double way) const;
     /// One row for each state.
-    [[nodiscard]] Eigen::MatrixXd along(std::span<const double> theta, std::span<const double> velocity) const;
+    Eigen::MatrixXd along(std::span<const double> theta, std::span<const double> velocity) const;
 
 private:
     double far_, fast_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "algebra/decompositions.hpp"
 #include "analysis/least_squares.hpp"
 
 namespace dinal::analysis {

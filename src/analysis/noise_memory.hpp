@@ -22,13 +22,13 @@ public:
                 Eigen::Index lags = most_lags);
 
     /// The number of weights of previous numbers, in all columns.
-    [[nodiscard]] std::size_t order() const;
+    std::size_t order() const;
     /// Returns whether the noise is white.
-    [[nodiscard]] bool none() const { return order() == 0; }
+    bool none() const { return order() == 0; }
     /// Combines rows so that noise with this memory becomes white.
-    [[nodiscard]] Eigen::MatrixXd whitened(const Eigen::MatrixXd& all) const;
+    Eigen::MatrixXd whitened(const Eigen::MatrixXd& all) const;
     /// The covariance matrix of the noise times `all`.
-    [[nodiscard]] Eigen::MatrixXd remembered(const Eigen::MatrixXd& all) const;
+    Eigen::MatrixXd remembered(const Eigen::MatrixXd& all) const;
 
 private:
     /// The noise of one measured column.

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "theory/theory_modes.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::analysis {
 

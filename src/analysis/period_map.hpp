@@ -59,36 +59,36 @@ public:
     static PeriodMap half(const SteadyQuestion& question, const motion::Monitor& monitor);
 
     /// One return with all its facts.
-    [[nodiscard]] MapStep step(const Place& from) const;
+    MapStep step(const Place& from) const;
 
     // As a Map; places are divided by the size of the motion.
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
-    [[nodiscard]] double rounding() const override { return rounding_of_place() / unit_; }
+    double rounding() const override { return rounding_of_place() / unit_; }
     /// Sets the unit of places to the size of the motion that begins here; returns its first place.
     Return measured(const Place& from);
-    [[nodiscard]] Place place(const Eigen::VectorXd& of_map) const { return inside(system_, unit_ * of_map); }
+    Place place(const Eigen::VectorXd& of_map) const { return inside(system_, unit_ * of_map); }
     /// The size of the motion of a step.
     static double size_of(const Place& from, const MapStep& step);
 
-    [[nodiscard]] double length() const { return length_; }
-    [[nodiscard]] bool is_half() const { return sign_ < 0; }
-    [[nodiscard]] double omega() const { return omega_; }  ///< scale of a Place; w0 if there is a spring
+    double length() const { return length_; }
+    bool is_half() const { return sign_ < 0; }
+    double omega() const { return omega_; }  ///< scale of a Place; w0 if there is a spring
     /// The rounding of a place at which a linear spring and friction are in balance.
-    [[nodiscard]] double rounding_of_place() const;
-    [[nodiscard]] model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
-    [[nodiscard]] Place place(const model::State& state) const { return {state.theta, state.velocity / omega_}; }
+    double rounding_of_place() const;
+    model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }
+    Place place(const model::State& state) const { return {state.theta, state.velocity / omega_}; }
     /// A contradiction of a user's function found in any run so far.
-    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
+    const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
 
 private:
     PeriodMap(const SteadyQuestion& question, double length, double sign, const motion::Monitor& monitor);
-    [[nodiscard]] MapStep computed(const Place& from) const;
-    [[nodiscard]] MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
+    MapStep computed(const Place& from) const;
+    MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
     void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
-    [[nodiscard]] Eigen::Matrix2d free_motion(double length) const;
-    [[nodiscard]] double slope_before(double t) const;
+    Eigen::Matrix2d free_motion(double length) const;
+    double slope_before(double t) const;
 
     const model::Oscillator& system_;
     model::Lowered lowered_;

@@ -65,8 +65,8 @@ private:
         range_ = step.high - step.low;
         return first;
     }
-    [[nodiscard]] double range() const override { return range_; }
-    [[nodiscard]] double size_at(const Map::Return& at) const override { return length_of(whole_->place(at.to)); }
+    double range() const override { return range_; }
+    double size_at(const Map::Return& at) const override { return length_of(whole_->place(at.to)); }
     bool complete(const Closed& found, bool any) override {
         const Place x = whole().place(found.x);
         if (found.returns == 1) return settle(whole(), x, 1, found.residual, any);
@@ -75,7 +75,7 @@ private:
         if (longer.contradiction()) contradiction_ = longer.contradiction();
         return settled;
     }
-    [[nodiscard]] bool is_bounded() const override {
+    bool is_bounded() const override {
         return system_.stiffness() > 0 && system_.damping() >= 0 && !question_.body.walls();
     }
 
@@ -89,11 +89,11 @@ private:
         look_beside(*last, question_.periods);
     }
 
-    [[nodiscard]] bool is_free() const override { return !(system_.stiffness() > 0) && !question_.body.walls(); }
+    bool is_free() const override { return !(system_.stiffness() > 0) && !question_.body.walls(); }
 
     /// The growth per natural period without viscous damping: a harmonic of M at the natural frequency adds pi |M_n| /
     /// k, and friction takes 2 (Rd forward + Rd backward) / k.
-    [[nodiscard]] double resonant_growth() const {
+    double resonant_growth() const {
         const model::Oscillator& system = question_.body;
         if (system.damping() != 0 || !(system.stiffness() > 0) || system.walls()) return 0;
         const double ratio = question_.repeats.period / system.natural_period(), n = std::round(ratio);

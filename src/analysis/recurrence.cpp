@@ -32,19 +32,19 @@ public:
         centre_ = low->theta + amplitude_;
     }
     /// The deviation of event i from the event a period before; `never` if the kinds differ.
-    [[nodiscard]] double off(std::size_t i) const {
+    double off(std::size_t i) const {
         const model::Event &now = events_[i], &then = events_[i - m_];
         if (kind_of(now) != kind_of(then) || !(amplitude_ > 0) || !(period_ > 0)) return never;
         return std::max(std::fabs(now.theta - then.theta - drift_) / amplitude_,
                         std::fabs(now.t - then.t - period_) / period_);
     }
     /// The worst deviation among the m events before events_[last].
-    [[nodiscard]] double worst(std::size_t last, double limit) const {
+    double worst(std::size_t last, double limit) const {
         double worst = 0;
         for (std::size_t i = last; i > last - m_ && worst <= limit; --i) worst = std::max(worst, off(i - 1));
         return worst;
     }
-    [[nodiscard]] std::optional<Recurrence> judge(double allowed) const {
+    std::optional<Recurrence> judge(double allowed) const {
         const std::size_t n = events_.size();
         const double change = worst(n, allowed);
         if (change > allowed) return {};
@@ -121,7 +121,7 @@ Swings swings(const std::vector<Stretch>& stretches, double period) {
         result.amplitudes[i] = std::max(result.amplitudes[i], std::fabs(s->end.theta - s->begin.theta) / 2);
         ++count[i];
     }
-    if (std::any_of(count.begin(), count.end(), [](int n) { return n == 0; })) return result;
+    if (std::ranges::any_of(count, [](int n) { return n == 0; })) return result;
     const auto& [a, b, c] = result.amplitudes;
     const double least = 1e-9 * std::max({a, b, c});
     result.trend = b - a > least && c - b > least   ? Trend::growing

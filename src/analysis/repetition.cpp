@@ -10,7 +10,7 @@
 
 #include "analysis/returns.hpp"
 #include "model/controller.hpp"
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 
 namespace dinal::analysis {
 namespace {
@@ -40,7 +40,7 @@ std::optional<std::vector<double>> probes_of_halves(const model::Excitation& exc
         t = excitation.next_break(t);
     }
     if (breaks.size() == 2) return times;
-    std::sort(breaks.begin(), breaks.end());
+    std::ranges::sort(breaks);
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
         const double length = breaks[i + 1] - breaks[i];
         constexpr double rounding = 1e-12;
@@ -253,7 +253,7 @@ std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Re
 
 bool is_antisymmetric(const model::Excitation& excitation, const Repetition& repeats) {
     const auto components = excitation.components();
-    if (std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
+    if (std::ranges::all_of(components, [&](const model::Component& c) {
             const auto number = harmonic_number(c, repeats);
             return number && is_odd(*number);
         })) {
@@ -282,7 +282,7 @@ std::complex<double> harmonic_of(const model::Excitation& excitation, const Repe
     const auto components = excitation.components();
     // a sin(w t + p) = a cos(w t + p - pi/2), summed over sines of this harmonic.
     std::complex<double> known;
-    const bool sines = std::all_of(components.begin(), components.end(), [&](const model::Component& c) {
+    const bool sines = std::ranges::all_of(components, [&](const model::Component& c) {
         const auto number = harmonic_number(c, repeats);
         if (number == n && n > 0) {
             const auto& sine = std::get<model::Harmonic>(c.term);

@@ -4,9 +4,6 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/returns.hpp"
-#include "model/controller.hpp"
-
 namespace dinal::analysis {
 namespace {
 
@@ -17,7 +14,7 @@ public:
           monitor_(monitor),
           sorted_(question.values),
           way_(question.values.back() > question.values.front() ? 1 : -1) {
-        std::sort(sorted_.begin(), sorted_.end());
+        std::ranges::sort(sorted_);
         range_ = sorted_.back() - sorted_.front();
         const auto& v = question.values;
         walkable_ = v.size() > 1;
@@ -30,15 +27,14 @@ public:
         follow_births();
         if (walked_ && !stopped()) search_from_far_end();
         follow_births();
-        std::stable_sort(curve_.jumps.begin(), curve_.jumps.end(),
-                         [](const MotionJump& a, const MotionJump& b) { return a.parameter < b.parameter; });
+        std::ranges::stable_sort(curve_.jumps, {}, &MotionJump::parameter);
         return std::move(curve_);
     }
 
 private:
     static constexpr std::size_t most_jumps = 12, most_born = 32;
 
-    [[nodiscard]] bool stopped() const { return stopped_; }
+    bool stopped() const { return stopped_; }
 
     /// Searches from the start of the previous motion, or from the requested start.
     SteadyMotion motion_at(double p, const std::optional<SteadyMotion>& before, bool near) {
@@ -82,7 +78,7 @@ private:
     }
 
     /// The circuit of a motion that may not be the only one; null if it has none.
-    [[nodiscard]] std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
+    std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
         const bool slides = motion.status == SteadyStatus::rest && motion.by_returns.question && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
@@ -162,10 +158,9 @@ private:
         BranchPoint& first = path.points.front();
         constexpr double small = 1e-2;
         if (first.kind == BranchKind::fold && point.kind == BranchKind::hopf) {
-            const double most =
-                std::max_element(path.points.begin(), path.points.end(), [](const auto& a, const auto& b) {
-                    return a.motion.amplitude < b.motion.amplitude;
-                })->motion.amplitude;
+            const double most = std::ranges::max_element(path.points, [](const auto& a, const auto& b) {
+                                    return a.motion.amplitude < b.motion.amplitude;
+                                })->motion.amplitude;
             if (first.motion.amplitude < small * most) path.points.erase(path.points.begin());
         }
         path.points.insert(path.points.begin(), {point.parameter, point.motion});
@@ -174,12 +169,12 @@ private:
         curve_.branches.push_back(std::move(path.points));
     }
     /// Returns whether a branch of limit cycles ended at this Hopf point.
-    [[nodiscard]] bool ends_at(const BranchPoint& hopf) const {
+    bool ends_at(const BranchPoint& hopf) const {
         constexpr double near = 1e-3, small = 1e-2;
-        return std::any_of(curve_.branches.begin(), curve_.branches.end(), [&](const auto& branch) {
+        return std::ranges::any_of(curve_.branches, [&](const auto& branch) {
             double most = 0;
             for (const BranchPoint& point : branch) most = std::max(most, point.motion.amplitude);
-            return std::any_of(branch.begin(), branch.end(), [&](const BranchPoint& end) {
+            return std::ranges::any_of(branch, [&](const BranchPoint& end) {
                 return end.motion.period > 0 && end.motion.amplitude < small * most &&
                        std::fabs(end.parameter - hopf.parameter) < near * range_;
             });
@@ -269,7 +264,7 @@ private:
                                 .landed = after.motion});
     }
 
-    [[nodiscard]] bool is_known(double p, const SteadyMotion& motion) const {
+    bool is_known(double p, const SteadyMotion& motion) const {
         for (const auto& branch : curve_.branches) {
             for (const BranchPoint& point : branch) {
                 if (!point.asked || std::fabs(point.parameter - p) > 1e-9 * range_) continue;
@@ -285,7 +280,7 @@ private:
     /// Follows the branch on which a jump lands, if it is new.
     void go_on_from(std::size_t i) {
         const MotionJump jump = curve_.jumps[i];
-        const auto next = std::lower_bound(sorted_.begin(), sorted_.end(), jump.parameter);
+        const auto next = std::ranges::lower_bound(sorted_, jump.parameter);
         if (jump.rising ? next == sorted_.end() : next == sorted_.begin()) return;
         const double p = jump.rising ? *next : *(next - 1);
         add_unless_known(p, motion_after(p, jump.landed, true));

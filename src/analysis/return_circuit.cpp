@@ -9,7 +9,6 @@
 #include "analysis/branch.hpp"
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
-#include "motion/engine/left.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::analysis {
@@ -115,7 +114,7 @@ public:
         return seen_from(here.question, motion, seen);
     }
 
-    [[nodiscard]] VectorXd units(const VectorXd& x, const Lap& /*lap*/, const SteadyMotion& motion) const override {
+    VectorXd units(const VectorXd& x, const Lap& /*lap*/, const SteadyMotion& motion) const override {
         VectorXd units = VectorXd::Zero(x.size());
         const std::vector<Eigen::Index> own = returns(*here_, section_).own();
         if (motion.by_returns.of_bodies) units = reach_of(motion.by_returns.of_bodies->run, *chart_, 64).range()(own);
@@ -162,14 +161,14 @@ public:
         return moved;
     }
 
-    [[nodiscard]] VectorXd growth() const override { return growth_; }
+    VectorXd growth() const override { return growth_; }
     /// Marks a cycle that began as a disturbance of this rest.
     void begins_at(const VectorXd& rest) { growth_ = first_ - returns(*here_, section_).place(rest); }
     /// The moment that corresponds to a place.
     [[nodiscard]] FullState full_state(const VectorXd& x, double p) {
         return returns(at(p), section_).full_state(x, {});
     }
-    [[nodiscard]] std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
+    std::vector<Eigen::Index> own() const { return returns(*here_, section_).own(); }
     [[nodiscard]] std::shared_ptr<const SteadyQuestion> question_from(const VectorXd& x, double p) {
         return begun_at(at(p).question, at(p).runs.from(full_state(x, p), start(at(p))), start(at(p)));
     }
@@ -189,12 +188,12 @@ private:
     };
 
     /// The range of a measured number.
-    [[nodiscard]] std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
+    std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
         if (chart_->bodies() == 1 && measured == 0) return {motion.low, motion.high};
         const Reach reach = reach_of(motion.by_returns.of_bodies->run, *chart_, 64);
         return {reach.low[measured], reach.high[measured]};
     }
-    [[nodiscard]] std::optional<Returns::Section> section_of(const SteadyMotion& motion) const {
+    std::optional<Returns::Section> section_of(const SteadyMotion& motion) const {
         Eigen::Index measured = 0;
         if (chart_->bodies() > 1 || !chart_->measures(0)) {
             const auto n = static_cast<Eigen::Index>(chart_->bodies());
@@ -211,8 +210,8 @@ private:
         if (!here_ || here_->p != p) here_ = std::make_unique<Here>(p, family_(p), relays_, monitor_);
         return *here_;
     }
-    [[nodiscard]] double start(const Here& here) const { return here.question.repeats.start + offset_; }
-    [[nodiscard]] Returns returns(Here& here, const Returns::Section& section) const {
+    double start(const Here& here) const { return here.question.repeats.start + offset_; }
+    Returns returns(Here& here, const Returns::Section& section) const {
         // For a rest a quarter of the fastest natural period: short enough to see each disturbance's rotation.
         const double natural = here.runs.system().shortest_natural_period();
         const double length = cycles_                  ? 3 * period_

@@ -22,8 +22,7 @@ namespace {
 constexpr double rows_of_period = 400;
 
 bool has_acts(const model::Drive& drive) {
-    return std::any_of(drive.events.begin(), drive.events.end(),
-                       [](const model::WantedEvent& event) { return event.act != nullptr; });
+    return std::ranges::any_of(drive.events, [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
 /// The longest delay of a controller.
@@ -64,11 +63,11 @@ private:
         return measured_at(returns_->full_state(from.to, from.mode));
     }
     std::optional<Map::Return> measured_at(const FullState& moment);
-    [[nodiscard]] double range() const override { return range_; }
-    [[nodiscard]] double size_at(const Map::Return& place) const override;
+    double range() const override { return range_; }
+    double size_at(const Map::Return& place) const override;
     bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
-    [[nodiscard]] bool is_bounded() const override { return false; }
-    [[nodiscard]] bool is_free() const override {
+    bool is_bounded() const override { return false; }
+    bool is_free() const override {
         return question().is_plain() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
                question().body.spring().none() && !question().body.walls();
     }
@@ -84,13 +83,13 @@ private:
     /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
     void complete_rest(const motion::Run& run, bool stands);
 
-    [[nodiscard]] const SteadyQuestion& question() const { return runs_.question(); }
-    [[nodiscard]] Eigen::Index n() const { return runs_.bodies(); }
+    const SteadyQuestion& question() const { return runs_.question(); }
+    Eigen::Index n() const { return runs_.bodies(); }
     /// The period of M, or the slowest natural period.
-    [[nodiscard]] double pace() const;
+    double pace() const;
 
     std::optional<motion::Run> stretch(const FullState& from, double start, double length, Reach& reach);
-    [[nodiscard]] Eigen::VectorXd units_of(const Reach& reach) const;
+    Eigen::VectorXd units_of(const Reach& reach) const;
     class Settling;
     void cycle();
     [[nodiscard]] static Returns::Section section(const Reach& reach, Eigen::Index measured) {
@@ -272,7 +271,7 @@ private:
     }
 
     /// The size of the torque needed for this motion.
-    [[nodiscard]] double torque_of(const Reach& reach) const {
+    double torque_of(const Reach& reach) const {
         double torque = 0;
         const auto& bodies = s_.runs_.system().bodies;
         for (Index i = 0; i < s_.n(); ++i) {
@@ -299,7 +298,7 @@ private:
 
     /// The observed numbers: measured angles and velocities, states, outputs of controllers, and the duration of the
     /// return. Other memory of controllers is not observed, so more than one return must agree.
-    [[nodiscard]] VectorXd seen(double time) const {
+    VectorXd seen(double time) const {
         const VectorXd y = s_.chart_.measured(vector_of(run_.left->carry->y));
         std::vector<double> all(y.begin(), y.end());
         for (const auto& controllers : run_.left->carry->controllers) {
@@ -310,7 +309,7 @@ private:
     }
 
     /// The difference between all observed numbers and those m returns before, evaluated `back` returns before the end.
-    [[nodiscard]] double off(std::size_t m, std::size_t back) const {
+    double off(std::size_t m, std::size_t back) const {
         std::size_t past = 1;  // number of returns within the delay
         while (past < times_.size() && times_.back() - times_[times_.size() - 1 - past] < delay_) ++past;
         const std::size_t span = std::max(m, past + 1) + 1;
@@ -324,7 +323,7 @@ private:
     }
 
     /// The smallest number of returns after which it repeats to this tolerance; 0: none.
-    [[nodiscard]] std::size_t comes_back(double within) const {
+    std::size_t comes_back(double within) const {
         const auto periods = static_cast<std::size_t>(s_.question().periods);
         const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
                                                                                : length_ > 0 ? 2048

@@ -104,7 +104,7 @@ Chart chart_of(Runs& runs) {
 model::WantedEvent passage(const Chart& chart, const Returns::Section& section, bool named) {
     return {.name = "",
             .when = std::make_shared<Passage>(chart, section, named),
-            .direction = model::Crossing::up,
+            .direction = model::Direction::up,
             .stop = true};
 }
 
@@ -274,7 +274,7 @@ Eigen::MatrixXd Runs::allowed(const HeldMode& mode, Index size) const {
 }
 
 bool Chart::any_goes_round() const {
-    return std::any_of(from_.begin(), from_.end(), [](Index from) { return from >= 0; });
+    return std::ranges::any_of(from_, [](Index from) { return from >= 0; });
 }
 
 VectorXd Chart::measured(const VectorXd& y) const {
@@ -475,7 +475,7 @@ std::vector<BodyMotion> bodies_at(const VectorXd& y, const Chart& chart, Index n
 std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivative) {
     const Eigen::VectorXcd values = algebra::eigenvalues(derivative);
     std::vector<std::complex<double>> sorted(values.data(), values.data() + values.size());
-    std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
+    std::ranges::sort(sorted, [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
     return sorted;
 }
 

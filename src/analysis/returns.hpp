@@ -5,13 +5,12 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "analysis/map.hpp"
 #include "analysis/steady.hpp"
-#include "motion/engine/left.hpp"
+#include "motion/engine/history.hpp"
 
 namespace dinal::analysis {
 
@@ -26,13 +25,13 @@ class Runs {
 public:
     Runs(const SteadyQuestion& question, const motion::Monitor& monitor) : question_(question), monitor_(monitor) {}
 
-    [[nodiscard]] const SteadyQuestion& question() const { return question_; }
-    [[nodiscard]] const model::System& system() const { return *question_.system; }
-    [[nodiscard]] Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
-    [[nodiscard]] const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
-    [[nodiscard]] FullState first() const;
+    const SteadyQuestion& question() const { return question_; }
+    const model::System& system() const { return *question_.system; }
+    Eigen::Index bodies() const { return static_cast<Eigen::Index>(system().bodies.size()); }
+    const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
+    FullState first() const;
     /// The drive of a run that begins at this moment and time.
-    [[nodiscard]] model::Drive from(const FullState& moment, double start) const;
+    model::Drive from(const FullState& moment, double start) const;
     [[nodiscard]] motion::Run run(const FullState& from, double start, double end, const motion::Grid& rows, bool dense,
                                   const std::optional<model::WantedEvent>& section = {});
     /// Continues another run with the memory of its controllers and delays; an empty run means from the start.
@@ -40,9 +39,9 @@ public:
                                     const std::optional<model::WantedEvent>& section = {});
     [[nodiscard]] static FullState at_stop(const motion::Run& run);
     /// The longest natural period of a body on the stiffness around it; 0 without stiffness.
-    [[nodiscard]] double natural_period() const;
+    double natural_period() const;
     /// The directions in which a moment may be disturbed without leaving its mode: orthonormal columns.
-    [[nodiscard]] Eigen::MatrixXd allowed(const HeldMode& mode, Eigen::Index size) const;
+    Eigen::MatrixXd allowed(const HeldMode& mode, Eigen::Index size) const;
 
 private:
     [[nodiscard]] motion::Run run(const model::Drive& drive, double start, double end, const motion::Grid& rows,
@@ -60,17 +59,17 @@ public:
     /// `from` has for each body the body from which its angle is measured; -1: the ground; itself: not measured.
     explicit Chart(std::vector<Eigen::Index> from) : from_(std::move(from)) {}
 
-    [[nodiscard]] bool measures(Eigen::Index k) const {
+    bool measures(Eigen::Index k) const {
         return k >= static_cast<Eigen::Index>(from_.size()) || from_[static_cast<std::size_t>(k)] != k;
     }
-    [[nodiscard]] bool goes_round(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
-    [[nodiscard]] std::size_t bodies() const { return from_.size(); }
-    [[nodiscard]] bool any_goes_round() const;
+    bool goes_round(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
+    std::size_t bodies() const { return from_.size(); }
+    bool any_goes_round() const;
     /// The measured numbers of all of y; 0 for angles that are not measured.
-    [[nodiscard]] Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
+    Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
     /// The reverse of measured(); `there` provides the angles that are not measured.
-    [[nodiscard]] Eigen::VectorXd state(const Eigen::VectorXd& x, const Eigen::VectorXd& there) const;
-    [[nodiscard]] double value(Eigen::Index k, std::span<const double> y) const;
+    Eigen::VectorXd state(const Eigen::VectorXd& x, const Eigen::VectorXd& there) const;
+    double value(Eigen::Index k, std::span<const double> y) const;
 
 private:
     std::vector<Eigen::Index> from_;
@@ -94,8 +93,8 @@ public:
     Returns(Runs& runs, const Chart& chart, double start, double length, const std::optional<Section>& section,
             Eigen::VectorXd units, Eigen::VectorXd there);
 
-    [[nodiscard]] Eigen::VectorXd place(const Eigen::VectorXd& y) const;
-    [[nodiscard]] FullState full_state(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
+    Eigen::VectorXd place(const Eigen::VectorXd& y) const;
+    FullState full_state(const Eigen::VectorXd& place, const std::optional<HeldMode>& mode) const;
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
     /// The first return from a moment that need not be on the section.
     [[nodiscard]] Return arrival(const FullState& from);
@@ -103,11 +102,11 @@ public:
     /// not help and the slopes differ.
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
-    [[nodiscard]] double start() const { return start_; }
+    double start() const { return start_; }
     /// Makes each return end at the opposite of its last place, as after half a period of a symmetric motion.
     void take_opposites() { sign_ = -1; }
     /// The indices in y of the numbers of a place.
-    [[nodiscard]] const std::vector<Eigen::Index>& own() const { return own_; }
+    const std::vector<Eigen::Index>& own() const { return own_; }
 
 private:
     void once(const FullState& from, Return& sum);
@@ -131,7 +130,7 @@ model::Excitation with_relays(const model::Excitation& excitation, const std::ve
 /// Lowest and highest value of each measured number over a run, sampled at looks + 1 times.
 struct Reach {
     Eigen::VectorXd low, high;
-    [[nodiscard]] Eigen::VectorXd range() const { return high - low; }
+    Eigen::VectorXd range() const { return high - low; }
 };
 Reach reach_of(const motion::Run& run, const Chart& chart, int looks = 512);
 /// The same from the rows of a run, for angles and velocities only.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "analysis/closed_search.hpp"
+#include "analysis/forced_search.hpp"
 
 namespace dinal::analysis {
 namespace {

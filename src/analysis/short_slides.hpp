@@ -27,10 +27,10 @@ public:
     }
 
     /// The facts about the motion, without those that follow from multipliers.
-    [[nodiscard]] SteadyMotion motion(const SteadyQuestion& question) const;
-    [[nodiscard]] std::vector<std::complex<double>> multipliers() const;
+    SteadyMotion motion(const SteadyQuestion& question) const;
+    std::vector<std::complex<double>> multipliers() const;
     /// The amplitude and phase of theta's fundamental, counted from the start of the drive.
-    [[nodiscard]] std::complex<double> fundamental() const;
+    std::complex<double> fundamental() const;
 
 private:
     static constexpr std::size_t terms = 44;
@@ -41,10 +41,10 @@ private:
     bool slide(double rest);
     bool start(double spare);
     [[nodiscard]] bool find_end();
-    [[nodiscard]] bool is_short() const;
-    [[nodiscard]] double way(double x) const;
-    [[nodiscard]] double speed_by_square(double x) const;
-    [[nodiscard]] double forgets(double x) const;
+    bool is_short() const;
+    double way(double x) const;
+    double speed_by_square(double x) const;
+    double forgets(double x) const;
 
     SingleSine sine_;
     double unit_ = 1;     ///< unit of places of rest

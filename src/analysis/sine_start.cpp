@@ -73,7 +73,7 @@ public:
         theory::Motion2 motion;
         double slope;  ///< slope of the velocity
     };
-    [[nodiscard]] Sliding at(double x) const {
+    Sliding at(double x) const {
         const Complex load = product(forced_, phasor(sine_.r * x));
         const Complex own = product(free_, std::exp(root_.real() * x) * phasor(root_.imag() * x));
         const Complex rate = product(root_, own);
@@ -82,7 +82,7 @@ public:
     }
 
     /// The time until the velocity is zero; none if the slide does not start, or takes longer than `most` (in x).
-    [[nodiscard]] std::optional<double> first_zero(double most) const {
+    std::optional<double> first_zero(double most) const {
         Complex load = forced_, own = free_;
         double before = 0, v_before = 0;
         for (int i = 1; before < most; ++i) {
@@ -110,7 +110,7 @@ private:
     using Complex = std::complex<double>;
 
     /// Newton's method between a point of the slide and one after its end.
-    [[nodiscard]] double zero_between(double from, double to, double x) const {
+    double zero_between(double from, double to, double x) const {
         constexpr int most_steps = 60;
         constexpr double nearly = 1e-6;  // the next step reduces the error to rounding
         const auto newton = [](double x0, const Sliding& now) { return x0 - now.motion.dy / now.slope; };
@@ -206,7 +206,7 @@ private:
     };
 
     /// The release forward from y; none if the load is too small.
-    [[nodiscard]] std::optional<Stick> released_from(double y) const {
+    std::optional<Stick> released_from(double y) const {
         const double needed = y + sine_.holding;
         if (!(std::fabs(needed) < 1)) return {};
         return Stick{y, std::asin(needed), 1};

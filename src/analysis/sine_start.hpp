@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "analysis/steady.hpp"
-#include "theory/theory_modes.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::analysis {
 
@@ -22,7 +22,7 @@ struct SingleSine {
     double phase = 0;                 ///< phase of the load when the drive starts
     double unit = 1, omega0 = 1;      ///< M0/k and w0
 
-    [[nodiscard]] model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }
+    model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }
 };
 
 /// None for another kind of system or M, or if r is out of the range of the closed forms.

@@ -182,7 +182,7 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
             if (!joint.walls || joint.of.size() == 1) return false;
             return joint.walls->crossed_by(joint.sum(other.drive.theta0)).has_value();
         };
-        if (std::any_of(question.system->joints.begin(), question.system->joints.end(), crosses)) {
+        if (std::ranges::any_of(question.system->joints, crosses)) {
             other.drive.theta0 = question.drive.theta0;
         }
     }

@@ -48,12 +48,12 @@ struct SteadyQuestion {
     /// A question about one plain body.
     static SteadyQuestion of(const model::Oscillator& body, model::Drive drive, const Repetition& repeats);
     /// This question as seen from another body or link.
-    [[nodiscard]] SteadyQuestion seen_at(std::size_t which) const;
+    SteadyQuestion seen_at(std::size_t which) const;
 
-    [[nodiscard]] bool is_timeless() const { return repeats.period == 0; }
-    [[nodiscard]] bool is_plain() const { return system->is_plain(); }
+    bool is_timeless() const { return repeats.period == 0; }
+    bool is_plain() const { return system->is_plain(); }
     /// The excitation of the body of interest; with several bodies the part that depends on time only.
-    [[nodiscard]] const model::Excitation& load() const;
+    const model::Excitation& load() const;
 };
 
 /// The motion of one of several bodies.
@@ -99,8 +99,8 @@ struct SteadyMotion {
     FoundByReturns by_returns = {};
 
     /// Returns whether a motion or a rest was found.
-    [[nodiscard]] bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }
-    [[nodiscard]] bool stands() const { return status == SteadyStatus::adheres || status == SteadyStatus::rest; }
+    bool is_found() const { return status != SteadyStatus::grows && status != SteadyStatus::none; }
+    bool stands() const { return status == SteadyStatus::adheres || status == SteadyStatus::rest; }
 };
 
 /// The steady motion that a run from the start of the question leads to, as seen from its joint.

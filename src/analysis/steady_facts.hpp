@@ -38,7 +38,7 @@ std::vector<OtherMotion> others_from(const std::vector<SteadyQuestion>& question
         if (found.outcome == model::Outcome::interrupted) break;
         const auto is_it = [&](const OtherMotion& seen) { return alike(seen.motion, found); };
         if (found.status == SteadyStatus::none || alike(known, found)) continue;
-        if (std::none_of(others.begin(), others.end(), is_it)) others.push_back({question, std::move(found)});
+        if (std::ranges::none_of(others, is_it)) others.push_back({question, std::move(found)});
     }
     return others;
 }

@@ -1,22 +1,82 @@
 // The integrals of a steady motion over its period, and its description in sentences.
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
+#include <optional>
 
-#include "analysis/friction_wave.hpp"
-#include "analysis/prose.hpp"
-#include "analysis/returns.hpp"
 #include "analysis/short_slides.hpp"
 #include "analysis/steady.hpp"
 #include "analysis/stretches.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
+#include "text/sentences.hpp"
 
 namespace dinal::analysis {
 namespace {
 
 constexpr double least_harmonic = 1e-9;  // smaller harmonics, relative to the whole, have no phase but rounding
+
+// The mean and the fundamental of a steady motion from its friction: as k theta + C theta' + I theta'' is M minus
+// friction, both follow from the integrals of M and of friction, which is constant during a slide and M - k theta
+// during a stick. The motion between events is not needed.
+
+struct Fundamental {
+    double mean = 0;            ///< mean of theta
+    std::complex<double> wave;  ///< (2/T) times the integral of theta e^(-i omega t), with t from the drive's start
+};
+
+/// Returns whether the system is linear except for Coulomb friction, so that by_friction() applies.
+bool is_linear_but_for_friction(const SteadyQuestion& question) {
+    const model::Lowered system(question.body);
+    return question.body.has_linear_spring() && system.stiffness() > 0 && !system.has_remainder() &&
+           !question.body.walls() && !question.load().has_feedback();
+}
+
+/// Mean and fundamental of theta from a run of one period, or of half a period if symmetric. `M_wave` is the
+/// fundamental of M. None if friction nearly cancels M.
+std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
+                                       const motion::Run& run, std::complex<double> M_wave) {
+    const model::Lowered system(question.body);
+    const Repetition& repeats = question.repeats;
+    const double omega = 2 * std::numbers::pi / repeats.period, length = run.t_stop - run.t_start;
+    const auto wave = [&](double t) { return std::polar(1.0, -omega * (t - repeats.start)); };
+    double sum = 0;
+    std::complex<double> sum_wave;
+    for (const Stretch& s : stretches(run)) {
+        if (!(s.lasts() > 0)) continue;
+        const std::complex<double> between =
+            (wave(s.to) - wave(s.from)) * std::complex<double>(0, 1 / omega);  // integral of e^(-i omega t)
+        if (s.stuck) {
+            const double held = -system.stiffness() * s.begin.theta;
+            const double piece = std::min(repeats.period / 64, s.lasts() / 12);
+            sum += held * s.lasts();
+            sum_wave += held * between;
+            sum += integral(question.load(), s.from, s.to, piece, [&](double t) { return question.load().value(t); });
+            sum_wave += integral(question.load(), s.from, s.to, piece,
+                                 [&](double t) { return question.load().value(t) * wave(t); });
+        } else {
+            const double braking =
+                system.braking(s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward);
+            sum += braking * s.lasts();
+            sum_wave += braking * between;
+        }
+    }
+    const std::complex<double> left = M_wave - sum_wave * (2 / length);
+    constexpr double least_left = 0.02;  // fraction of M: an error of 1e-14 of M stays below 1e-12 of theta
+    if (!(std::abs(left) > least_left * std::abs(M_wave))) return {};
+    Fundamental found;
+    found.wave =
+        left / std::complex<double>(system.stiffness() - system.inertia() * omega * omega, system.damping() * omega);
+    if (!motion.symmetric) {
+        const double mean_M = integral(question.load(), run.t_start, run.t_stop, repeats.period / 64,
+                                       [&](double t) { return question.load().value(t); }) /
+                              length;
+        found.mean = (mean_M - sum / length) / system.stiffness();
+    }
+    return found;
+}
 
 /// Sums over time: theta, and theta e^(-i omega t).
 struct Moments {
@@ -44,10 +104,6 @@ double in_one_turn(double angle) {
     const double turn = angle - whole * std::ceil(angle / whole - 0.5);
     return turn == 0 ? 0 : turn;
 }
-
-}  // namespace
-
-namespace {
 
 /// A run from the beginning of M's period.
 motion::Run run_from(const SteadyQuestion& question, const model::State& start, double length, bool dense,
@@ -87,7 +143,7 @@ std::optional<Fundamental> by_motion(const SteadyQuestion& question, const Repet
             return Moments{off, off * std::polar(1.0, -omega * (t - repeats.start))};
         };
         const double longest = std::min({own, repeats.period, s.lasts()}) / 12;
-        auto end = std::upper_bound(ends.begin(), ends.end(), s.from);
+        auto end = std::ranges::upper_bound(ends, s.from);
         for (double from = s.from; from < s.to;) {
             const double to = end == ends.end() ? s.to : std::min(*end++, s.to);
             sum = sum + integral(breaking, from, to, longest, moments_at);
@@ -138,7 +194,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 
 namespace {
 
-class SteadyStory : Prose {
+class SteadyStory : text::Prose {
 public:
     /// The names of several bodies; empty for one.
     SteadyStory(const SteadyMotion& motion, bool timeless, const std::vector<std::string>& names)
@@ -206,8 +262,8 @@ public:
     std::string take_text() { return std::move(sentences_); }
 
 private:
-    [[nodiscard]] bool several() const { return !names_.empty(); }
-    [[nodiscard]] std::string number(double x) const {
+    bool several() const { return !names_.empty(); }
+    std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
     void tell_period() {
@@ -330,7 +386,7 @@ std::string description_of(const SteadyQuestion& question, const SteadyMotion& m
     std::vector<std::string> names;
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;
-    const bool sampled = std::any_of(loads.begin(), loads.end(), model::has_memory<model::SampledController>);
+    const bool sampled = std::ranges::any_of(loads, model::has_memory<model::SampledController>);
     SteadyStory story(motion, question.repeats.period == 0, names);
     story.tell({}, sampled, question.repeats.period);
     if (motion.is_found()) story.count_others(others);

@@ -16,7 +16,7 @@ struct Stretch {
     bool stuck = false;
     std::optional<model::Event> begun_by = {}, ended_by = {};  ///< none at the ends of the run
 
-    [[nodiscard]] double lasts() const { return to - from; }
+    double lasts() const { return to - from; }
 };
 
 /// In order and without gaps from t_start to t_stop; a stretch may have zero length. Requires a computed run.

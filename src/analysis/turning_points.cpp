@@ -20,7 +20,7 @@ double noise_of(std::span<const double> theta) {
 bool is_noisy(std::span<const double> values) {
     std::vector<double> half;
     for (std::size_t i = 0; i < values.size(); i += 2) half.push_back(values[i]);
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const auto [low, high] = std::ranges::minmax_element(values);
     return noise_of(values) > std::max(1e-6 * (*high - *low), 0.5 * noise_of(half));
 }
 
@@ -41,7 +41,7 @@ std::size_t standing_at(std::span<const double> theta, double limit) {
 }  // namespace
 
 CutOff cut_off(std::span<const double> theta) {
-    const auto [low, high] = std::minmax_element(theta.begin(), theta.end());
+    const auto [low, high] = std::ranges::minmax_element(theta);
     return {*low, *high, standing_at(theta, *low), standing_at(theta, *high)};
 }
 

@@ -10,7 +10,6 @@
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
-#include "lua/user_function.hpp"
 #include "lua/worker_state.hpp"
 #include "plots/animation/scene.hpp"
 #include "text/words.hpp"

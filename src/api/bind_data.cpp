@@ -29,7 +29,7 @@
 #include "plots/shades.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {
@@ -535,7 +535,7 @@ int sort(lua_State* L) {
     std::vector<std::size_t> rows(data->size());
     std::iota(rows.begin(), rows.end(), std::size_t{0});
     const lua::Vector* numbers = column.numbers();
-    std::stable_sort(rows.begin(), rows.end(), [&](std::size_t i, std::size_t j) {
+    std::ranges::stable_sort(rows, [&](std::size_t i, std::size_t j) {
         if (numbers == nullptr) {
             const std::vector<std::string>& words = column.words();
             return down ? words[j] < words[i] : words[i] < words[j];
@@ -627,15 +627,14 @@ bool is_drawn(double value, bool logarithmic) {
 /// The distinct values, increasing.
 std::vector<double> different_values(std::span<const double> all, bool logarithmic) {
     std::vector<double> values;
-    std::copy_if(all.begin(), all.end(), std::back_inserter(values),
-                 [logarithmic](double v) { return is_drawn(v, logarithmic); });
-    std::sort(values.begin(), values.end());
+    std::ranges::copy_if(all, std::back_inserter(values), [logarithmic](double v) { return is_drawn(v, logarithmic); });
+    std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
 }
 
 std::size_t place_among(const std::vector<double>& values, double value) {
-    return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
+    return static_cast<std::size_t>(std::ranges::lower_bound(values, value) - values.begin());
 }
 
 plots::Shades shades_of(const lua::Options& options, const std::array<std::string, 3>& names,
@@ -755,10 +754,9 @@ std::optional<plots::Interval> telling_frequencies(const Data& data, const plots
 /// typical height, as it is unbounded near a pole.
 std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
     std::vector<double> values;
-    std::copy_if(curve.y.values.begin(), curve.y.values.end(), std::back_inserter(values),
-                 [](double y) { return std::isfinite(y); });
+    std::ranges::copy_if(curve.y.values, std::back_inserter(values), [](double y) { return std::isfinite(y); });
     if (values.empty() || (!data.is_spectrum && data.pieces_of.empty())) return std::nullopt;
-    const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
+    const auto [least, greatest] = std::ranges::minmax_element(values);
     const plots::Interval all{*least, *greatest};
     if (data.is_spectrum) {
         return all.high > 0 && all.low < spectrum_decades * all.high
@@ -885,8 +883,7 @@ std::vector<std::string> different_parameters(const Data& data) {
 std::vector<std::string> drawable_results(const Data& data, const std::string& x) {
     std::vector<std::string> names;
     for (const DataColumn& column : data.columns) {
-        const bool given =
-            std::find(data.parameters.begin(), data.parameters.end(), column.name) != data.parameters.end();
+        const bool given = std::ranges::find(data.parameters, column.name) != data.parameters.end();
         if (!given && column.name != x && column.numbers() != nullptr) names.push_back(column.name);
     }
     return names;

@@ -12,10 +12,10 @@
 #include "api/data.hpp"
 #include "api/lua_run.hpp"
 #include "lua/memory_limit.hpp"
-#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -278,11 +278,9 @@ std::string energy_card(lua_State* L, int index, const terminal::Display& screen
     constexpr std::size_t name_and_number = 23;
     std::string card;
     const std::string whole = terminal::spelled(text_of_energy(energy), screen);
-    for (std::string_view rest = whole; !rest.empty();) {
-        const std::string_view line = rest.substr(0, rest.find('\n'));
+    for (const std::string_view line : text::split(whole, '\n')) {
         const bool fits = text::columns(line) < screen.width || !line.starts_with(' ');
         card.append(card.empty() ? "" : "\n").append(fits ? line : line.substr(0, name_and_number));
-        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
     }
     return text::wrapped(card, screen.width - 1);
 }
@@ -316,8 +314,7 @@ lua::Pushed energy_of_run(lua_State* L, const RunHandle& run) {
 std::string story_of_simulated(lua_State* L, const RunHandle& run) {
     const std::vector<RunHandle> parts = parts_of(run);
     std::vector<const motion::Run*> seen(run->system().joints.size(), &run->result);
-    if (run->of_all())
-        std::transform(parts.begin(), parts.end(), seen.begin(), [](const RunHandle& part) { return &part->result; });
+    if (run->of_all()) std::ranges::transform(parts, seen.begin(), [](const RunHandle& part) { return &part->result; });
     model::Drive drive = run->origin->drive;
     if (run->terms) drive.loads = {*run->terms};
     std::vector<analysis::Energy> energies;

@@ -54,14 +54,13 @@ namespace {
 
 constexpr double no_end = 1e300;
 
-/// Returns whether terms and formula agree between these times, to the rounding of both. Every replacement of a formula
-/// is tested in this way before a run.
-bool agree(model::Formula& formula, const model::Excitation& terms, double from, double to) {
+/// Returns whether terms and formula agree at these times, to the rounding of both. Every replacement of a formula is
+/// tested in this way before a run.
+bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& times) {
     constexpr double rounding = 4 * std::numeric_limits<double>::epsilon(),
                      allowed = 1e-12;  // relative, for the values
     double greatest = 0, worst = 0;
-    for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {
-        const double t = to < no_end ? from + part * (to - from) : from + std::exp(10 * part);
+    for (const double t : times) {
         const double value = formula.value(t, {}, {}), near = rounding * std::fabs(t);
         const double slope = std::fabs(formula.value(t + near, {}, {}) - formula.value(t - near, {}, {}));
         const double apart = std::fabs(terms.value(t) - value) - slope;
@@ -72,22 +71,13 @@ bool agree(model::Formula& formula, const model::Excitation& terms, double from,
     return worst <= allowed * greatest;
 }
 
-/// The same test for periodic terms, in the middles of the pieces of the first, second and last period.
-bool agree(model::Formula& formula, const model::Excitation& terms, const std::vector<double>& middles, double period,
-           double to) {
-    constexpr double allowed = 1e-12, far = 1000;  // relative, for the values; period number without an end
-    double greatest = 0, worst = 0;
-    for (const double middle : middles) {
-        const double last = to < no_end ? std::floor((to - middle) / period) : far;
-        for (const double n : {0.0, 1.0, last}) {
-            const double t = middle + std::max(n, 0.0) * period, value = formula.value(t, {}, {});
-            const double apart = std::fabs(terms.value(t) - value);
-            if (!std::isfinite(apart)) return false;
-            greatest = std::max(greatest, std::fabs(value));
-            worst = std::max(worst, apart);
-        }
+/// Times between these, for the test.
+std::vector<double> times_within(double from, double to) {
+    std::vector<double> times;
+    for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {
+        times.push_back(to < no_end ? from + part * (to - from) : from + std::exp(10 * part));
     }
-    return worst <= allowed * greatest;
+    return times;
 }
 
 /// A periodic, piecewise constant function as native terms: each difference from its first piece becomes a square wave.
@@ -95,16 +85,18 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
     constexpr int most_pieces = 50;
     constexpr double least = 1e-9;  // fraction of a period by which rounding may shorten the last piece
     const double first = function.next_break(from), end = first + period * (1 - least);
+    constexpr double far = 1000;  // number of the last period that is tested without an end
     std::vector<model::Term> made;
-    std::vector<double> middles;
+    std::vector<double> tested;  // the middle of each piece in the first, second and last period
     double base = 0, offset = 0;
     double next = first;
     while (next < end) {
         const double t = next;
         next = function.next_break(t);
         const double width = std::min(next, first + period) - t;
-        middles.push_back(t + width / 2);
-        const auto terms = function.formula()->terms(t, middles.back());
+        const double middle = t + width / 2, last = to < no_end ? std::floor((to - middle) / period) : far;
+        for (const double n : {0.0, 1.0, last}) tested.push_back(middle + std::max(n, 0.0) * period);
+        const auto terms = function.formula()->terms(t, middle);
         const bool one = terms && terms->components().size() == 1;
         const auto* level = one ? std::get_if<model::Constant>(&terms->components().front().term) : nullptr;
         if (level == nullptr || made.size() > most_pieces) return {};
@@ -121,7 +113,7 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         if (!wave) return {};
         sum = sum + *wave;
     }
-    return agree(*function.formula(), sum, middles, period, to) ? std::optional(sum) : std::nullopt;
+    return agree(*function.formula(), sum, tested) ? std::optional(sum) : std::nullopt;
 }
 
 /// The function as native terms in a time span, one for each piece; empty if that fails.
@@ -129,7 +121,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     constexpr int most_pieces = 100;
     if (!(function.next_condition(from) < to)) {
         auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
-        return terms && agree(*function.formula(), *terms, from, to) ? terms : std::nullopt;
+        return terms && agree(*function.formula(), *terms, times_within(from, to)) ? terms : std::nullopt;
     }
     if (const double period = function.formula()->period(); period > 0) {
         if (auto waves = squares(function, from, to, period)) return waves;
@@ -141,7 +133,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
         const double next = std::min(function.next_condition(t), to);
         if (function.formula() == nullptr || n == most_pieces) return {};
         const auto piece = function.formula()->terms(t, t + (next - t) / 2);
-        if (!piece || !agree(*function.formula(), *piece, t, next)) return {};
+        if (!piece || !agree(*function.formula(), *piece, times_within(t, next))) return {};
         double until = model::never;
         if (next < to) until = next;
         sum = sum + piece->windowed(t, until);
@@ -309,7 +301,7 @@ std::string proof_of(model::UserFunction& function) {
         return "sampled: the function of a delayed excitation has conditions on the motion";
     }
     const auto& steps = own->formula()->steps();
-    const auto conditions = std::count_if(steps.begin(), steps.end(), [](const model::Formula::Step& step) {
+    const auto conditions = std::ranges::count_if(steps, [](const model::Formula::Step& step) {
         return model::is_comparison(step.op) || model::is_fold(step.op);
     });
     if (conditions == 0) return "read: bounded on every stretch";

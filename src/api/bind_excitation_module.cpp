@@ -15,11 +15,10 @@
 #include "lua/interrupt.hpp"
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
-#include "lua/vector.hpp"
 #include "model/controller.hpp"
 #include "text/characters.hpp"
-#include "text/fixed_text.hpp"
 #include "text/option.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -174,7 +173,7 @@ Eigen::Index samples_column(lua_State* L, const lua::Options& options, const std
         return *found;
     }
     for (const std::string_view name : usual) {
-        if (const auto found = std::find(table.names.begin(), table.names.end(), name); found != table.names.end()) {
+        if (const auto found = std::ranges::find(table.names, name); found != table.names.end()) {
             return found - table.names.begin();
         }
     }

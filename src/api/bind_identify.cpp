@@ -32,8 +32,8 @@
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "model/controller.hpp"
-#include "model/laws/asymmetric.hpp"
 #include "model/laws/bristle.hpp"
+#include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/springs/polynomial_spring.hpp"
 #include "model/system.hpp"
@@ -228,7 +228,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     if (!options.has("free")) return;
     std::vector<bool> held(analysis::unknown_count, true);
     for (const std::string& name : free_names(L, options)) {
-        const auto* const known = std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name);
+        const auto* const known = std::ranges::find(analysis::unknown_names, name);
         if (known == analysis::unknown_names.end()) {
             options.fail({.sentence = fmt::format("free has {}, but what can be fitted is {}", name,
                                                   fmt::join(analysis::unknown_names, ", ")),
@@ -241,12 +241,11 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         held[place] = false;
     }
     for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
-        const auto place = static_cast<std::size_t>(which);
-        if (!held[place] || question.given[place]) continue;
+        if (!held[static_cast<std::size_t>(which)] || question.gives(which)) continue;
         if (which != Unknown::I && which != Unknown::k) {
-            question.given[place] = 0;  // an Re below Rd is raised to Rd
+            at(question.given, which) = 0;  // an Re below Rd is raised to Rd
         } else if (question.M) {
-            options.fail({fmt::format("{} is neither given nor in free", analysis::unknown_names[place])});
+            options.fail({fmt::format("{} is neither given nor in free", at(analysis::unknown_names, which))});
         }
     }
 }
@@ -440,7 +439,7 @@ public:
         constexpr double first = 2.2;
         double length = first * swing_;
         while (t_.front() + length < t_.back()) {
-            const auto rows = std::upper_bound(t_.begin(), t_.end(), t_.front() + length) - t_.begin();
+            const auto rows = std::ranges::upper_bound(t_, t_.front() + length) - t_.begin();
             const Eigen::Index count = known_until_[static_cast<std::size_t>(rows) - 1];
             if (count > n + 4) question.stages.push_back(count);
             length *= 2;
@@ -452,8 +451,7 @@ public:
         constexpr double rounding = 1e-7;
         for (const MeasuredColumn& column : columns_) {
             std::vector<double> known;
-            std::copy_if(column.numbers.begin(), column.numbers.end(), std::back_inserter(known),
-                         [](double x) { return !std::isnan(x); });
+            std::ranges::copy_if(column.numbers, std::back_inserter(known), [](double x) { return !std::isnan(x); });
             question.steps.push_back(analysis::step_of_instrument(known) / column.size);
             question.least_noise = std::max(question.least_noise, rounding * column.range / column.size);
         }
@@ -489,7 +487,7 @@ private:
             for (std::size_t j = 0; j < system_.joints.size(); ++j) {
                 for (const char* quantity : measure_names) known.push_back(before_names(system_, j) + quantity);
             }
-            const auto found = std::find(known.begin(), known.end(), name);
+            const auto found = std::ranges::find(known, name);
             if (found == known.end()) {
                 options_.fail({.sentence = fmt::format("measured must be {}, got \"{}\"", wanted, name),
                                .option = "measured",
@@ -514,7 +512,7 @@ private:
         }
         if (asked.empty()) options_.wrong("measured", wanted);
         lua_pop(L_, 1);
-        std::sort(asked.begin(), asked.end(), [](const auto& a, const auto& b) {
+        std::ranges::sort(asked, [](const auto& a, const auto& b) {
             return std::tie(a.first.quantity, a.first.joint, a.second) <
                    std::tie(b.first.quantity, b.first.joint, b.second);
         });
@@ -534,9 +532,8 @@ private:
         }
         std::vector<std::size_t> rows;
         for (std::size_t i = 0; i < t.size(); ++i) {
-            const bool known = std::any_of(columns_.begin(), columns_.end(), [i](const MeasuredColumn& column) {
-                return !std::isnan(column.numbers[i]);
-            });
+            const bool known = std::ranges::any_of(
+                columns_, [i](const MeasuredColumn& column) { return !std::isnan(column.numbers[i]); });
             if (known && !std::isnan(t[i])) rows.push_back(i);
         }
         for (const std::size_t i : rows) t_.push_back(t[i]);
@@ -548,7 +545,7 @@ private:
             }
             column.numbers = std::move(kept);
             if (known.size() < 8) options_.fail({"a measured column needs at least 8 numbers"});
-            const auto [low, high] = std::minmax_element(known.begin(), known.end());
+            const auto [low, high] = std::ranges::minmax_element(known);
             if (!(*high > *low)) options_.fail({"a measured column is constant: there is no motion in it"});
             column.range = *high - *low;
             column.size = std::max(analysis::noise_of(known), 1e-6 * column.range);
@@ -616,15 +613,15 @@ private:
     }
 
     /// The first column that measures this quantity, or nullptr.
-    [[nodiscard]] const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
-        const auto found = std::find_if(columns_.begin(), columns_.end(), [&](const MeasuredColumn& column) {
+    const MeasuredColumn* measured(std::size_t joint, Measure quantity) const {
+        const auto found = std::ranges::find_if(columns_, [&](const MeasuredColumn& column) {
             return column.joint == joint && column.quantity == quantity;
         });
         return found == columns_.end() ? nullptr : &*found;
     }
 
     /// The measured column of angles whose zero has this name.
-    [[nodiscard]] std::optional<int> column_with_zero(std::string_view name) const {
+    std::optional<int> column_with_zero(std::string_view name) const {
         for (std::size_t i = 0; i < columns_.size(); ++i) {
             const bool is_angle = columns_[i].quantity == Measure::theta;
             if (is_angle && before_names(system_, columns_[i].joint) + "offset" == name) return static_cast<int>(i);
@@ -633,7 +630,7 @@ private:
     }
 
     /// Returns whether the initial angle matters: without a spring, no velocity depends on it.
-    [[nodiscard]] bool place_counts(std::size_t body) const {
+    bool place_counts(std::size_t body) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
             if (!joint.is_on(body)) continue;
@@ -642,7 +639,7 @@ private:
         return false;
     }
 
-    [[nodiscard]] double first_velocity(std::size_t body) const {
+    double first_velocity(std::size_t body) const {
         const MeasuredColumn* velocity = measured(body, Measure::velocity);
         if (velocity != nullptr && !std::isnan(velocity->numbers[0])) return velocity->numbers[0];
         const MeasuredColumn* theta = measured(body, Measure::theta);
@@ -677,7 +674,7 @@ private:
     }
 
     /// Returns whether this parameter is a function or an excitation.
-    [[nodiscard]] bool is_function(std::string_view name) const {
+    bool is_function(std::string_view name) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
             const model::ContactFriction& friction = joint.friction;
@@ -796,8 +793,8 @@ private:
 
     std::optional<Eigen::VectorXd> predicted(const Eigen::VectorXd& p, Eigen::Index count) {
         const int top = lua_gettop(L_);
-        const auto rows = static_cast<std::size_t>(std::lower_bound(known_until_.begin(), known_until_.end(), count) -
-                                                   known_until_.begin() + 1);
+        const auto rows =
+            static_cast<std::size_t>(std::ranges::lower_bound(known_until_, count) - known_until_.begin() + 1);
         std::optional<Eigen::VectorXd> found;
         if (push_run(p, rows)) found = stacked(p, rows);
         lua_settop(L_, top);
@@ -833,10 +830,10 @@ private:
         }
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const std::string before = before_names(system_, j);
-            const bool is_fitted = std::any_of(free_.begin(), free_.end(),
-                                               [&](const Fitted& one) { return one.name.starts_with(before); });
-            const bool is_measured = std::any_of(columns_.begin(), columns_.end(),
-                                                 [j](const MeasuredColumn& column) { return column.joint == j; });
+            const bool is_fitted =
+                std::ranges::any_of(free_, [&](const Fitted& one) { return one.name.starts_with(before); });
+            const bool is_measured =
+                std::ranges::any_of(columns_, [j](const MeasuredColumn& column) { return column.joint == j; });
             if (is_fitted || is_measured) add_missing_torques(j, p, noise, found);
         }
         return found;
@@ -918,7 +915,7 @@ private:
     }
 
     /// The parameter of this name if it is fitted.
-    [[nodiscard]] std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
+    std::optional<double> fitted(const Eigen::VectorXd& p, std::string_view name) const {
         for (std::size_t i = 0; i < free_.size(); ++i) {
             if (free_[i].name == name) return p[static_cast<Eigen::Index>(i)];
         }
@@ -1036,10 +1033,7 @@ void name_values(FitAnswer& fit) {
         constexpr double much = 1.5;
         if (fit.found.has_errors && error > 0 && cautious > much * error) fit.cautious.emplace_back(name, cautious);
     };
-    const auto given = [&fit](Unknown which) {
-        return fit.question.given[static_cast<std::size_t>(which)].has_value();
-    };
-    const bool absolute = fit.question.M || given(Unknown::I) || given(Unknown::k);
+    const bool absolute = fit.question.M || fit.question.gives(Unknown::I) || fit.question.gives(Unknown::k);
     if (!absolute) fit.units.M.clear();
     add("omega0", found.omega0.value, found.omega0.error, found.omega0.cautious);
     add("zeta", found.zeta.value, found.zeta.error, found.zeta.cautious);
@@ -1051,7 +1045,7 @@ void name_values(FitAnswer& fit) {
     if (absolute && found.is_noise) {
         for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
     }
-    const double k = found.value[static_cast<std::size_t>(Unknown::k)];
+    const double k = at(found.value, Unknown::k);
     for (std::size_t i = 0; i < analysis::unknown_names.size(); ++i) {
         if (!found.silent[i]) continue;
         std::string name(analysis::unknown_names[i]);
@@ -1061,13 +1055,13 @@ void name_values(FitAnswer& fit) {
         if (!absolute && name == "Rd") name = "Rd_over_k", low /= k, high /= k;
         fit.silent.push_back({name, {low, high}});
     }
-    const auto value = [&found](Unknown which) { return found.value[static_cast<std::size_t>(which)]; };
-    auto system = model::Oscillator::make({.inertia = value(Unknown::I),
-                                           .stiffness = value(Unknown::k),
-                                           .damping = value(Unknown::C),
-                                           .kinetic_friction = value(Unknown::Rd),
-                                           .breakaway = std::max(value(Unknown::Re), value(Unknown::Rd)),
-                                           .units = fit.units});
+    auto system =
+        model::Oscillator::make({.inertia = at(found.value, Unknown::I),
+                                 .stiffness = k,
+                                 .damping = at(found.value, Unknown::C),
+                                 .kinetic_friction = at(found.value, Unknown::Rd),
+                                 .breakaway = std::max(at(found.value, Unknown::Re), at(found.value, Unknown::Rd)),
+                                 .units = fit.units});
     if (system) fit.system = model::as_system(system.value());
 }
 
@@ -1118,10 +1112,14 @@ int identify_record(lua_State* L) {
 
 // ---- the answer
 
-std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+std::vector<std::string> names_of_pairs(const auto& pairs) {
     std::vector<std::string> names;
-    for (const auto& value : fit.values) names.push_back(value.first);
+    for (const auto& pair : pairs) names.push_back(pair.first);
     return names;
+}
+
+std::vector<std::string> names_of_fit(const FitAnswer& fit) {
+    return names_of_pairs(fit.values);
 }
 
 int fit_value(lua_State* L) {
@@ -1133,8 +1131,7 @@ int fit_value(lua_State* L) {
         lua_pushnumber(L, value);
         return 1;
     }
-    if (!fit->from_guess && std::find(analysis::unknown_names.begin(), analysis::unknown_names.end(), name) !=
-                                analysis::unknown_names.end()) {
+    if (!fit->from_guess && std::ranges::find(analysis::unknown_names, name) != analysis::unknown_names.end()) {
         lua::raise(L, {.sentence = fmt::format(
                            "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
                        .culprit = std::string(name)});
@@ -1214,9 +1211,8 @@ constexpr std::array<const char*, 3> causes{
 std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     std::vector<std::string> notes;
     const analysis::Identified& found = fit.found;
-    constexpr auto kinetic = static_cast<std::size_t>(Unknown::Rd), holding = static_cast<std::size_t>(Unknown::Re);
-    const double Rd = found.value[kinetic], Re = fit.question.given[holding].value_or(Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * found.error[kinetic]) {  // tolerance for rounding in a record without noise
+    const double Rd = at(found.value, Unknown::Rd), Re = fit.question.given_or(Unknown::Re, Rd);
+    if (Re < Rd * (1 - 1e-9) - 3 * at(found.error, Unknown::Rd)) {  // tolerance for rounding in a record without noise
         notes.push_back(fmt::format(
             "Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
             "Rd; leave Re out, or give Rd as well",
@@ -1278,8 +1274,8 @@ std::string fit_summary(const FitAnswer& fit) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
         const std::string unit = unit_of_value(fit.units, name.substr(body_of_value(fit, name).size()));
-        const auto silent = std::find_if(unlisted.begin(), unlisted.end(),
-                                         [&known = name](const auto& one) { return one.first == known; });
+        const auto silent =
+            std::ranges::find_if(unlisted, [&known = name](const auto& one) { return one.first == known; });
         if (silent != unlisted.end()) {
             text += fmt::format("\n  {:<{}} {}", name, width, text_of_bounds(silent->second, unit));
             unlisted.erase(silent);
@@ -1290,7 +1286,7 @@ std::string fit_summary(const FitAnswer& fit) {
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit);
     }
-    const double k = fit.found.value[static_cast<std::size_t>(Unknown::k)];
+    const double k = at(fit.found.value, Unknown::k);
     for (const auto& [name, bounds] : unlisted) {
         if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1 determines only the ratio
             const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
@@ -1311,17 +1307,15 @@ std::string fit_summary(const FitAnswer& fit) {
 }
 
 std::vector<std::string> silent_names(const FitAnswer& fit) {
-    std::vector<std::string> names;
-    for (const auto& one : fit.silent) names.push_back(one.first);
-    return names;
+    return names_of_pairs(fit.silent);
 }
 
 /// The errors that are not withheld, of values that the record determines.
 std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
     auto errors = fit.errors;
     std::erase_if(errors, [&fit](const auto& error) {
-        return std::isnan(error.second) || std::any_of(fit.silent.begin(), fit.silent.end(),
-                                                       [&error](const auto& one) { return one.first == error.first; });
+        return std::isnan(error.second) ||
+               std::ranges::any_of(fit.silent, [&error](const auto& one) { return one.first == error.first; });
     });
     return errors;
 }

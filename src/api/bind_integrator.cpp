@@ -11,7 +11,7 @@
 #include "lua/values.hpp"
 #include "motion/integrators.hpp"
 #include "source/describe.hpp"
-#include "text/fixed_text.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -48,8 +48,7 @@ constexpr auto integrator_module_members = functions_of(std::type_identity<motio
 // ---- integrator.h
 
 const text::Option* find_option(const motion::MethodText& about, std::string_view name) {
-    const auto found = std::find_if(about.call.options.begin(), about.call.options.end(),
-                                    [=](const text::Option& option) { return option.name == name; });
+    const auto found = std::ranges::find(about.call.options, name, &text::Option::name);
     return found == about.call.options.end() ? nullptr : &*found;
 }
 

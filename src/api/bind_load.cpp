@@ -79,34 +79,33 @@ void take_groups(files::ReadColumns& content, const std::vector<std::vector<std:
 void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadColumns& content) {
     if (!asked.sort && asked.duplicates == Duplicates::keep) return;
     auto& columns = content.columns;
-    auto times = std::find_if(columns.begin(), columns.end(), [](const files::ReadColumn& column) {
-        return column.name == "t" || column.name == "time";
-    });
+    auto times = std::ranges::find_if(
+        columns, [](const files::ReadColumn& column) { return column.name == "t" || column.name == "time"; });
     const char* option = asked.sort ? "sort" : "duplicates";
     if (times != columns.end() && times->of_words) {
         options.fail(option, fmt::format("{} needs times, and the column '{}' holds words, such as {}", option,
                                          times->name, first_word(times->words)));
     }
     if (times == columns.end()) {
-        times = std::find_if(columns.begin(), columns.end(), [](const auto& column) { return !column.of_words; });
+        times = std::ranges::find_if(columns, [](const auto& column) { return !column.of_words; });
     }
     if (times == columns.end()) options.fail(option, fmt::format("{} needs a column of numbers", option));
     const std::vector<double> t = times->numbers;
-    const auto gap = std::find_if(t.begin(), t.end(), [](double x) { return std::isnan(x); });
+    const auto gap = std::ranges::find_if(t, [](double x) { return std::isnan(x); });
     if (gap != t.end()) {
         options.fail(option, fmt::format("{} needs a time in each row, and row {} of column '{}' is empty", option,
                                          gap - t.begin() + 1, times->name));
     }
     std::vector<std::size_t> order(t.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return t[a] < t[b]; });
+    std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return t[a] < t[b]; });
     std::vector<std::vector<std::size_t>> groups;
     for (const std::size_t row : order) {
         const bool joins = asked.duplicates != Duplicates::keep && !groups.empty() && t[groups.back().back()] == t[row];
         joins ? groups.back().push_back(row) : groups.push_back({row});
     }
     if (!asked.sort) {
-        std::sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.front() < b.front(); });
+        std::ranges::sort(groups, [](const auto& a, const auto& b) { return a.front() < b.front(); });
     }
     take_groups(content, groups, asked.duplicates);
 }
@@ -130,8 +129,8 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
 }
 
 bool has_column(const files::ReadColumns& content, std::string_view name) {
-    return std::any_of(content.columns.begin(), content.columns.end(),
-                       [name](const files::ReadColumn& column) { return column.name == name; });
+    return std::ranges::any_of(content.columns,
+                               [name](const files::ReadColumn& column) { return column.name == name; });
 }
 
 /// In a table of t and theta, the number of the first row that is earlier than the one before.
@@ -171,11 +170,11 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
 /// times that do not decrease.
 bool is_run(const files::ReadColumns& content) {
     const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
-    const bool of_one = std::none_of(content.columns.begin(), content.columns.end(),
-                                     [](const auto& column) { return column.name.find('.') != std::string::npos; });
+    const bool of_one = std::ranges::none_of(
+        content.columns, [](const auto& column) { return column.name.find('.') != std::string::npos; });
     const bool saved = of_one && !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
     return (saved || (has_column(content, "t") && has_column(content, "theta"))) &&
-           std::all_of(content.columns.begin(), content.columns.end(), finite) && !earlier_row(content);
+           std::ranges::all_of(content.columns, finite) && !earlier_row(content);
 }
 
 /// The units in the line of units; default units without one.
@@ -237,7 +236,7 @@ std::string ending_of_file(lua_State* L, std::string_view name) {
 }
 
 bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> known) {
-    return std::find(known.begin(), known.end(), ending) != known.end();
+    return std::ranges::find(known, ending) != known.end();
 }
 
 int load(lua_State* L) {

@@ -13,11 +13,9 @@
 #include "api/lua_run.hpp"
 #include "api/picture.hpp"
 #include "files/file.hpp"
-#include "files/table.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/options.hpp"
-#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "lua/worker_state.hpp"
@@ -552,8 +550,7 @@ plots::PaperSize asked_size(const lua::Options& options, const TargetOptions& as
         return {};
     }
     const std::vector<double>& size = *asked.size;
-    if (size.size() != 2 || *std::min_element(size.begin(), size.end()) < 2 ||
-        *std::max_element(size.begin(), size.end()) > 100) {
+    if (size.size() != 2 || *std::ranges::min_element(size) < 2 || *std::ranges::max_element(size) > 100) {
         options.fail("size", "size must be width and height in cm, each from 2 to 100, such as { 8.5, 6 }");
     }
     return {size[0], size[1]};
@@ -563,7 +560,7 @@ enum class FileKind { svg, png, pdf, txt };  // the first three are in the order
 
 FileKind kind_of(const lua::Options& options, std::string_view file) {
     constexpr std::array<std::string_view, 4> endings{".svg", ".png", ".pdf", ".txt"};
-    const auto* const known = std::find(endings.begin(), endings.end(), text::ending_of(file));
+    const auto* const known = std::ranges::find(endings, text::ending_of(file));
     if (known == endings.end()) {
         options.fail({.sentence = fmt::format("the name '{}' must end in .svg, .png, .pdf or .txt", file),
                       .option = "file",
@@ -696,8 +693,7 @@ void apply_options(lua_State* L, const lua::Options& options, std::vector<plots:
 }
 
 int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure> figures) {
-    const bool phase =
-        std::any_of(figures.begin(), figures.end(), [](const plots::Figure& figure) { return figure.equal; });
+    const bool phase = std::ranges::any_of(figures, [](const plots::Figure& figure) { return figure.equal; });
     TargetOptions asked;
     options.fill(asked);
     if (asked.show || asked.file) lua::refuse_in_worker(L, "a plot");

@@ -41,11 +41,9 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
-#include "motion/engine/left.hpp"
 #include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
-#include "text/fixed_text.hpp"
 #include "text/option.hpp"
 #include "text/sentences.hpp"
 #include "text/suggest.hpp"
@@ -168,7 +166,7 @@ std::span<const double> column_values(const motion::Run& result, Eigen::Index co
 /// Returns whether the last value repeats the first: whole periods with one row too many.
 bool closes(std::span<const double> values) {
     constexpr double same = 1e-9;  // relative to the range of the values
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    const auto [low, high] = std::ranges::minmax_element(values);
     return *high > *low && std::fabs(values.front() - values.back()) <= same * (*high - *low);
 }
 
@@ -222,7 +220,7 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
                        const std::optional<double>& from) {
     const motion::Run& result = run.result;
     const motion::BetweenRows between(result, nullptr);
-    const auto place = std::find(between.columns().begin(), between.columns().end(), column);
+    const auto place = std::ranges::find(between.columns(), column);
     if (place != between.columns().end()) {
         const double begin = std::max(from.value_or(result.t_start), result.t_start);
         if (!(begin < result.t_stop)) {
@@ -239,8 +237,8 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
     const auto time = result.find("t");
     if (!time) options.fail({"the run has no column t, so its rows have no times"});
     std::span<const double> t = column_values(result, *time), values = column_values(result, column);
-    const auto first = static_cast<std::size_t>(
-        std::lower_bound(t.begin(), t.end(), from.value_or(t.empty() ? 0 : t.front())) - t.begin());
+    const auto first =
+        static_cast<std::size_t>(std::ranges::lower_bound(t, from.value_or(t.empty() ? 0 : t.front())) - t.begin());
     t = t.subspan(first);
     values = values.subspan(first);
     const std::size_t even = analysis::evenly_spaced(t);
@@ -259,7 +257,7 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
 std::optional<std::size_t> joint_of_column(const LuaRun& run, std::string_view column) {
     if (!run.of_all()) return {};
     const auto& states = run.origin->drive.states;
-    if (std::any_of(states.begin(), states.end(), [&](const model::OwnState& s) { return s.name == column; })) return 0;
+    if (std::ranges::any_of(states, [&](const model::OwnState& s) { return s.name == column; })) return 0;
     return run.system().joint_named(column.substr(0, column.find('.')));
 }
 
@@ -419,7 +417,7 @@ int body_or_link(lua_State* L) {
     if (!run->of_all()) return 0;
     const std::string_view name = lua_tostring(L, 2);
     const auto& joints = run->system().joints;
-    const auto own = std::find_if(joints.begin(), joints.end(), [&](const model::Joint& j) { return j.name == name; });
+    const auto own = std::ranges::find(joints, name, &model::Joint::name);
     if (own == joints.end()) return 0;
     push_run(L, part_of(run, static_cast<std::size_t>(own - joints.begin())));
     return 1;
@@ -507,13 +505,12 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
                         const std::vector<std::string>& known, const lua::Class& of) {
     std::vector<std::string_view> names(known.begin(), known.end());
     for (const lua::Member& member : of.members) {
-        const bool is_known = std::find(known.begin(), known.end(), member.name) != known.end();
+        const bool is_known = std::ranges::find(known, member.name) != known.end();
         if (member.kind != lua::Kind::metamethod && !is_known) names.push_back(member.name);
     }
     std::string cure = text::did_you_mean(wrong, names);
-    const bool listed = std::all_of(known.begin(), known.end(), [&sentence](const std::string& name) {
-        return sentence.find(name) != std::string::npos;
-    });
+    const bool listed = std::ranges::all_of(
+        known, [&sentence](const std::string& name) { return sentence.find(name) != std::string::npos; });
     if (listed) names.erase(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(known.size()));
     lua::raise(L, {.sentence = std::move(sentence),
                    .culprit = std::string(wrong),
@@ -550,8 +547,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     if (result.on_belt) {  // extremes of theta on a belt are no events
         const std::vector<model::Event> turns = motion::turns_on_belt(result);
         events.insert(events.end(), turns.begin(), turns.end());
-        std::stable_sort(events.begin(), events.end(),
-                         [](const model::Event& a, const model::Event& b) { return a.t < b.t; });
+        std::ranges::stable_sort(events, {}, &model::Event::t);
     }
     call.check();
     const auto found = analysis::recurrence(events);
@@ -963,7 +959,7 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
         options.fail(wrong.error());
     }
     const double kept = asked.times ? so_far.t_stop : t_end;
-    const auto end = std::upper_bound(times.begin(), times.end(), kept);
+    const auto end = std::ranges::upper_bound(times, kept);
     return task.rows.followed_by(static_cast<std::size_t>(end - times.begin()), std::move(more));
 }
 
@@ -974,7 +970,7 @@ double asked_end(const lua::Options& options, const MoreTime& asked, double stop
         return *asked.t_end;
     }
     if (asked.times && !asked.times->empty()) {
-        return *std::max_element(asked.times->begin(), asked.times->end());
+        return *std::ranges::max_element(*asked.times);
     }
     if (stopped < wanted) {
         return wanted;
@@ -1044,7 +1040,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
         lua_rawgeti(L, -1, i);
         const auto column = column_at(L, -1, result.names(), fmt::format("columns[{}]", i));
         const files::NamedColumn& one = all[static_cast<std::size_t>(options.value_or_fail(column))];
-        if (std::any_of(asked.begin(), asked.end(), [&one](const auto& other) { return other.name == one.name; })) {
+        if (std::ranges::any_of(asked, [&one](const auto& other) { return other.name == one.name; })) {
             options.fail("columns", fmt::format("columns names '{}' twice; load reads no such file", one.name));
         }
         asked.push_back(one);

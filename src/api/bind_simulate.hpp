@@ -12,7 +12,7 @@
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "source/origin.hpp"
-#include "text/fixed_text.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 

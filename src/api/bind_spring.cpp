@@ -58,7 +58,7 @@ int polynomial_spring(lua_State* L) {
         }
         lua_pop(L, 1);
     }
-    std::sort(spring.terms.begin(), spring.terms.end());
+    std::ranges::sort(spring.terms);
     lua::push<model::Spring>(L, spring.terms.empty() ? model::Spring() : model::Spring(spring));
     return 1;
 }

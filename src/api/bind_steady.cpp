@@ -8,14 +8,13 @@
 #include "analysis/steady_facts.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/bind_simulate.hpp"
-#include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/lua_run.hpp"
 #include "api/steady_answer.hpp"
 #include "lua/values.hpp"
-#include "lua/vector.hpp"
 #include "model/controller.hpp"
+#include "terminal/display.hpp"
 #include "text/characters.hpp"
 #include "text/sentences.hpp"
 
@@ -455,7 +454,7 @@ analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& option
                                         const analysis::SteadyQuestion& question, const std::optional<double>& period) {
     const auto acting = analysis::acting_in(question);
     const auto is_script = [](const analysis::Acting& one) { return one.what->has_script(); };
-    const bool scripts = !question.drive.states.empty() || std::any_of(acting.begin(), acting.end(), is_script);
+    const bool scripts = !question.drive.states.empty() || std::ranges::any_of(acting, is_script);
     std::optional<analysis::Repetition> repeats;
     asking(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
     if (!repeats && !period) {

@@ -18,8 +18,7 @@
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
-#include "model/laws/coulomb.hpp"
-#include "model/laws/jenkins.hpp"
+#include "model/laws/bristle.hpp"
 #include "motion/engine/modes.hpp"
 #include "source/describe.hpp"
 
@@ -347,7 +346,7 @@ const char* varying_option(lua_State* L) {
 /// Pushes a field of a named system: a body or a link.
 int field_of_names(lua_State* L, const model::System& system, std::string_view name) {
     if (const auto own = system.joint_named(name)) return push_alone(L, fmt::format("sys.{}", name), system, *own);
-    const bool of_one = std::any_of(system_class.members.begin(), system_class.members.end(), [&](const auto& member) {
+    const bool of_one = std::ranges::any_of(system_class.members, [&](const auto& member) {
         return member.name == name && member.kind == lua::Kind::field && !is_of_whole(name);
     });
     if (of_one) {
@@ -360,7 +359,7 @@ int field_of_names(lua_State* L, const model::System& system, std::string_view n
 /// Pushes a field of a system with varying friction: what the user wrote.
 int field_of_varying(lua_State* L, const model::System& system, std::string_view name) {
     constexpr std::array<std::string_view, 6> own{"Rd", "Re", "normal", "friction", "walls", "dead_zone"};
-    if (std::find(own.begin(), own.end(), name) == own.end()) return 0;
+    if (std::ranges::find(own, name) == own.end()) return 0;
     push_joint(L, system, 0);
     const char* varying = varying_option(L);
     if (system.joints.front().stops && name == "dead_zone") lua::raise(L, "with elastic walls a mass has no dead zone");

@@ -156,7 +156,7 @@ public:
         luaL_checkstack(L, 10, "too many values");
     }
 
-    [[nodiscard]] const lua::Options& options() const { return options_; }
+    const lua::Options& options() const { return options_; }
 
     /// A number or a vector within the range of its row. Vectors and tables must have equal lengths. A nan in a vector
     /// is accepted, with the result nan. An absent option has its default, a number or another option.
@@ -239,8 +239,8 @@ private:
         return quantities_.emplace_back(std::move(values));
     }
 
-    [[nodiscard]] bool has_nan(std::size_t i) const {
-        return std::any_of(quantities_.begin(), quantities_.end(), [&](const Quantity& x) { return std::isnan(x[i]); });
+    bool has_nan(std::size_t i) const {
+        return std::ranges::any_of(quantities_, [&](const Quantity& x) { return std::isnan(x[i]); });
     }
 
     void check_size(std::string_view name, std::size_t size) {
@@ -253,8 +253,7 @@ private:
     }
 
     void check(std::string_view name, const text::Range& range, std::span<const double> values) const {
-        const auto bad =
-            std::find_if(values.begin(), values.end(), [&](double x) { return !std::isnan(x) && !range.holds(x); });
+        const auto bad = std::ranges::find_if(values, [&](double x) { return !std::isnan(x) && !range.holds(x); });
         if (bad != values.end()) {
             refuse(name, static_cast<std::size_t>(bad - values.begin()), *bad, fmt::format("must {}", range.must));
         }
@@ -299,7 +298,7 @@ public:
           theta0_(arguments.quantity("theta0")),
           velocity0_(arguments.quantity("velocity0")) {}
     FreeMotion operator[](std::size_t i) const { return {system_, {theta0_[i], velocity0_[i]}}; }
-    [[nodiscard]] bool slow_down_by_friction() const { return !system_.friction().none(); }
+    bool slow_down_by_friction() const { return !system_.friction().none(); }
 
 private:
     model::Oscillator system_;

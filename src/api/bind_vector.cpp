@@ -15,7 +15,6 @@
 #include "lua/interrupt.hpp"
 #include "lua/memory_limit.hpp"
 #include "lua/tokens.hpp"
-#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 
@@ -221,7 +220,7 @@ int holds(lua_State* L) {
     lua::make_room(L, of.size / 8 + 1);
     std::vector<bool> mask(of.size);
     for (std::size_t i = 0; i < of.size; ++i) mask[i] = f(of.a[i], of.b[i]);
-    const bool all = std::find(mask.begin(), mask.end(), false) == mask.end();
+    const bool all = std::ranges::find(mask, false) == mask.end();
     const auto [function, line] = running_line(L);
     const bool again = function == last_comparison.function && line == last_comparison.line;
     last_comparison = {function, line, again ? last_comparison.count + 1 : 1, all, std::move(mask)};
@@ -286,8 +285,8 @@ void subtract_previous(Values v, std::vector<double>& result) {
 }
 
 void sort(Values v, std::vector<double>& result) {
-    std::copy(v.begin(), v.end(), result.begin());
-    std::sort(result.begin(), result.end(), [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
+    std::ranges::copy(v, result.begin());
+    std::ranges::sort(result, [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; });
 }
 
 // ---- methods with an argument
@@ -328,7 +327,7 @@ Expected<double> quantile(const Vector& v, double p) {
     if (!(p >= 0 && p <= 1)) return Error{fmt::format("p = {:.6g} must lie between 0 and 1", p)};
     if (v.size() == 0) return Error{"the vector is empty"};
     Numbers values(v.begin(), v.end());
-    if (std::any_of(values.begin(), values.end(), [](double x) { return std::isnan(x); })) return std::nan("");
+    if (std::ranges::any_of(values, [](double x) { return std::isnan(x); })) return std::nan("");
     const double place = p * static_cast<double>(values.size() - 1), below = std::floor(place);
     const auto nth = values.begin() + static_cast<std::ptrdiff_t>(below);
     std::nth_element(values.begin(), nth, values.end());
@@ -346,9 +345,9 @@ Expected<Numbers> interpolated(lua_State* L, const Vector& v, const Vector& x, c
                                  step - x.begin() + 1, *step)};
     }
     Numbers result = lua::new_numbers(L, v.size());
-    std::transform(v.begin(), v.end(), result.begin(), [&](double at) {
+    std::ranges::transform(v, result.begin(), [&](double at) {
         if (std::isnan(at)) return at;
-        const auto i = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), at) - x.begin());
+        const auto i = static_cast<std::size_t>(std::ranges::upper_bound(x, at) - x.begin());
         if (i == 0) return y.begin()[0];
         if (i == x.size()) return y.begin()[i - 1];
         const double* const a = x.begin() + i - 1;
@@ -378,8 +377,7 @@ int joined(lua_State* L) {
 int pick(lua_State* L) {
     const Vector& v = *lua::test<Vector>(L, 1);
     const Vector& w = *lua::test<Vector>(L, 2);
-    const bool mask =
-        w.size() == v.size() && std::all_of(w.begin(), w.end(), [](double x) { return x == 0 || x == 1; });
+    const bool mask = w.size() == v.size() && std::ranges::all_of(w, [](double x) { return x == 0 || x == 1; });
     std::vector<double> picked;
     for (std::size_t i = 0; i < w.size(); ++i) {
         const double x = w.begin()[i];
@@ -418,7 +416,7 @@ int arctangent(lua_State* L) {
 int equal(lua_State* L) {
     const auto* a = lua::test<Vector>(L, 1);
     const auto* b = lua::test<Vector>(L, 2);
-    lua_pushboolean(L, a != nullptr && b != nullptr && std::equal(a->begin(), a->end(), b->begin(), b->end()) ? 1 : 0);
+    lua_pushboolean(L, a != nullptr && b != nullptr && std::ranges::equal(*a, *b) ? 1 : 0);
     return 1;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
 #include "api/lua_run.hpp"
 #include "lua/bind.hpp"

@@ -10,7 +10,7 @@
 #include "lua/memory_limit.hpp"
 #include "motion/columns.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 #include "text/sentences.hpp"
 
 namespace dinal::api {
@@ -39,7 +39,7 @@ public:
             right_.push_back(column.numbers() != nullptr);
         }
     }
-    [[nodiscard]] std::string lines(std::size_t width) const {
+    std::string lines(std::size_t width) const {
         std::vector<std::string> lines(rows_ + 1);
         std::size_t used = 0, left_out = 0;
         for (std::size_t column = 0; column < cells_.size(); ++column) {
@@ -95,10 +95,9 @@ std::string heading_of(std::span<const model::Event> events) {
 }  // namespace
 
 std::string first_word(const std::vector<std::string>& words) {
-    const auto found =
-        std::find_if(words.begin(), words.end(), [](const auto& word) { return !files::parse_field(word, false); });
+    const auto found = std::ranges::find_if(words, [](const auto& word) { return !files::parse_field(word, false); });
     if (found != words.end()) return files::shown(*found);
-    const auto number = std::find_if(words.begin(), words.end(), [](const auto& word) { return !word.empty(); });
+    const auto number = std::ranges::find_if(words, [](const auto& word) { return !word.empty(); });
     return number == words.end() ? "''" : "the number " + *number + " in double quotes";
 }
 
@@ -138,13 +137,12 @@ std::string DataColumn::text(std::size_t row) const {
 }
 
 const DataColumn* Data::find(std::string_view name) const {
-    const auto found = std::find_if(columns.begin(), columns.end(), [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find(columns, name, &DataColumn::name);
     return found != columns.end() ? &*found : nullptr;
 }
 
 const DataCompanion* Data::companion(std::string_view name) const {
-    const auto found =
-        std::find_if(companions.begin(), companions.end(), [name](const auto& c) { return c.name == name; });
+    const auto found = std::ranges::find(companions, name, &DataCompanion::name);
     return found != companions.end() ? &*found : nullptr;
 }
 

@@ -28,19 +28,19 @@ struct DataColumn {
     std::variant<lua::Vector, Words> values;
     std::string unit = {};  ///< shown with the name in tables and at axes
 
-    [[nodiscard]] std::size_t size() const;
-    [[nodiscard]] const lua::Vector* numbers() const { return std::get_if<lua::Vector>(&values); }
-    [[nodiscard]] const std::vector<std::string>& words() const { return *std::get<Words>(values); }
+    std::size_t size() const;
+    const lua::Vector* numbers() const { return std::get_if<lua::Vector>(&values); }
+    const std::vector<std::string>& words() const { return *std::get<Words>(values); }
     /// A copy with the values of these rows.
-    [[nodiscard]] DataColumn rows(const std::vector<std::size_t>& rows) const;
+    DataColumn rows(const std::vector<std::size_t>& rows) const;
     /// Pushes the value of a row.
     void push(lua_State* L, std::size_t row) const;
     /// The column as written to a file.
-    [[nodiscard]] files::NamedColumn named() const;
+    files::NamedColumn named() const;
     /// The value as text: six digits, or a word unchanged.
-    [[nodiscard]] std::string text(std::size_t row) const;
+    std::string text(std::size_t row) const;
     /// "t, s"
-    [[nodiscard]] std::string label() const { return model::of_unit(name, unit); }
+    std::string label() const { return model::of_unit(name, unit); }
 };
 
 /// The first of these words that is no number, in quotes: it made a column of a file one of words.
@@ -67,9 +67,9 @@ struct Data {
     std::vector<DataCompanion> companions = {};
     std::shared_ptr<const Data> between = {};  ///< additional rows between these, for lines in d:plot()
 
-    [[nodiscard]] std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
-    [[nodiscard]] const DataColumn* find(std::string_view name) const;
-    [[nodiscard]] const DataCompanion* companion(std::string_view name) const;
+    std::size_t size() const { return columns.empty() ? 0 : columns.front().size(); }
+    const DataColumn* find(std::string_view name) const;
+    const DataCompanion* companion(std::string_view name) const;
 };
 // Shared: pictures and iterations keep their data.
 using DataHandle = std::shared_ptr<const Data>;
@@ -91,7 +91,7 @@ struct ListColumn {
     std::string unit = {};
 
     template <class List>
-    [[nodiscard]] DataColumn column_from(const List& list) const {
+    DataColumn column_from(const List& list) const {
         using Value = std::decay_t<std::invoke_result_t<const Get&, decltype(*std::begin(list))>>;
         constexpr bool number = std::is_convertible_v<Value, double>;
         std::vector<std::conditional_t<number, double, std::string>> values;
@@ -121,7 +121,7 @@ struct ColumnUnits {
     std::string t, theta, M, speed, frequency;
 
     /// The unit of a column of a run; empty for a state.
-    [[nodiscard]] std::string of(std::string_view column) const;
+    std::string of(std::string_view column) const;
 };
 
 /// The column of the values (numbers or strings) on the top of the stack; errors begin with `call`.
@@ -138,18 +138,18 @@ public:
     /// Each column is a parameter with at least one value.
     explicit PointGrid(std::vector<DataColumn> parameters);
 
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] const std::vector<DataColumn>& parameters() const { return parameters_; }
+    std::size_t size() const { return size_; }
+    const std::vector<DataColumn>& parameters() const { return parameters_; }
     /// The index of the parameter's value at this point.
-    [[nodiscard]] std::size_t place(std::size_t parameter, std::size_t point) const {
+    std::size_t place(std::size_t parameter, std::size_t point) const {
         return point / strides_[parameter] % parameters_[parameter].size();
     }
     /// "r = 0.5, g = 1"
-    [[nodiscard]] std::string text(std::size_t point) const;
+    std::string text(std::size_t point) const;
     /// Sets the parameters of this point in the table on the top of the stack.
     void set_fields(lua_State* L, std::size_t point) const;
     /// The parameters as columns with one row for each of these points.
-    [[nodiscard]] std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
+    std::vector<DataColumn> columns(const std::vector<std::size_t>& points) const;
 
 private:
     std::vector<DataColumn> parameters_;

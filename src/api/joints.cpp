@@ -7,24 +7,16 @@
 #include <utility>
 
 #include "api/bind_excitation.hpp"
-#include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
 #include "api/drive_options.hpp"
 #include "api/lua_run.hpp"
 #include "api/system_options.hpp"
-#include "lua/lua_text.hpp"
-#include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
-#include "lua/vector.hpp"
 #include "model/controller.hpp"
-#include "model/joint_options.hpp"
+#include "model/functions.hpp"
 #include "model/laws/coulomb.hpp"
-#include "model/laws/freewheel.hpp"
-#include "model/laws/sum.hpp"
 #include "source/describe.hpp"
-#include "text/characters.hpp"
-#include "text/sentences.hpp"
 
 namespace dinal::api {
 
@@ -66,7 +58,7 @@ void for_each_named(lua_State* L, const lua::Options& options, const char* optio
     for (std::size_t j = first; j < end; ++j) known.push_back(system.joints[j].name);
     for (lua_pushnil(L); lua_next(L, -2) != 0; lua_pop(L, 1)) {
         const std::string name = lua_type(L, -2) == LUA_TSTRING ? lua_tostring(L, -2) : lua::written(L, -2);
-        const auto found = std::find(known.begin(), known.end(), name);
+        const auto found = std::ranges::find(known, name);
         if (found == known.end()) {
             const char* kind = which == Names::bodies ? "body" : which == Names::links ? "link" : "body or link";
             options.fail({.sentence = fmt::format("{}: there is no {} '{}'; there is {}", option, kind, name,
@@ -92,7 +84,7 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
     options.push(option);
     std::vector<std::string> names = names_in_table(L, options, option);
     for (const std::string& name : names) {
-        if (std::find(std::begin(names_in_runs), std::end(names_in_runs), name) != std::end(names_in_runs)) {
+        if (std::ranges::find(names_in_runs, name) != std::end(names_in_runs)) {
             options.fail(
                 {.sentence = fmt::format("{}: '{}' is a name that a run has already; take another", option, name),
                  .option = option,
@@ -199,8 +191,8 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
     std::vector<model::Weight> weights;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const std::string& body = system.bodies[i].name;
-        const bool is_option = std::any_of(link_options.begin(), link_options.end(),
-                                           [&](const text::Option& option) { return body == option.name; });
+        const bool is_option =
+            std::ranges::any_of(link_options, [&](const text::Option& option) { return body == option.name; });
         if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL && !is_option) {
             const double by = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : 0;
             if (!std::isfinite(by) || by == 0) {
@@ -297,7 +289,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     lua_pop(L, 1);
     if (options.has("links")) {
         for (const std::string& name : tables_by_name(L, options, "links")) {
-            if (std::find(names.begin(), names.end(), name) != names.end()) {
+            if (std::ranges::find(names, name) != names.end()) {
                 options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
             }
             lua_getfield(L, -1, name.c_str());

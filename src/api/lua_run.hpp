@@ -34,13 +34,13 @@ struct LuaRun {
     // The run as seen from each joint, made on demand. Weak, as these keep the run of all bodies.
     mutable std::vector<std::weak_ptr<const LuaRun>> parts = {};
 
-    [[nodiscard]] const model::System& system() const { return *origin->system; }
+    const model::System& system() const { return *origin->system; }
     /// Returns whether it is the run of a named system as a whole.
-    [[nodiscard]] bool of_all() const { return origin != nullptr && system().named && !joint; }
+    bool of_all() const { return origin != nullptr && system().named && !joint; }
     /// The index of its joint in the system.
-    [[nodiscard]] std::size_t place() const { return joint.value_or(0); }
+    std::size_t place() const { return joint.value_or(0); }
     /// Returns whether it was simulated and is the run of a body.
-    [[nodiscard]] bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
+    bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
 };
 
 /// Sets up calls of user functions of a run, which receive the motion by the names of its bodies and states.

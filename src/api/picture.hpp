@@ -1,7 +1,6 @@
 // Pictures in Lua: figures described but not yet drawn, and their output.
 #pragma once
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>

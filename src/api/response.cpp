@@ -12,7 +12,6 @@
 
 #include "analysis/response_curve.hpp"
 #include "analysis/steady_facts.hpp"
-#include "api/bind_excitation.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
@@ -45,7 +44,7 @@ struct HarmonicSweep {
     std::optional<double> frequency = {};  ///< none: the frequency is varied
     double amplitude = 1;                  ///< torque, if the frequency is varied
 
-    [[nodiscard]] double frequency_at(double x) const {
+    double frequency_at(double x) const {
         if (frequency) return *frequency;
         return column.name == "omega" ? x / (2 * std::numbers::pi) : column.name == "period" ? 1 / x : x;
     }
@@ -185,8 +184,7 @@ DataCompanion points_of(const std::vector<ResponsePart>& parts, const std::vecto
     const bool is_plane = over.size() > 1;
     if (is_plane) {
         number_curves(located, high - low);
-        std::stable_sort(located.begin(), located.end(),
-                         [](const LocatedPoint& a, const LocatedPoint& b) { return a.curve < b.curve; });
+        std::ranges::stable_sort(located, {}, &LocatedPoint::curve);
     }
     const VariedColumn& column = over.back();
     Data points = table_of(
@@ -254,9 +252,9 @@ public:
     }
 
     /// Returns whether there are two parameters: the second is varied at each value of the first.
-    [[nodiscard]] bool is_plane() const { return parameters_.size() > 1; }
+    bool is_plane() const { return parameters_.size() > 1; }
     /// The values of the first of two parameters; a dummy value if there is one parameter.
-    [[nodiscard]] std::vector<double> beside_values() const {
+    std::vector<double> beside_values() const {
         if (!is_plane()) return {0};
         const auto values = parameters_.front().numbers()->values();
         return {values.begin(), values.end()};
@@ -264,17 +262,17 @@ public:
     /// Sets the first of two parameters.
     void set_beside(double value) { beside_ = value; }
 
-    [[nodiscard]] const std::vector<double>& values() const { return values_; }
-    [[nodiscard]] const model::System& system() const { return *system_; }
+    const std::vector<double>& values() const { return values_; }
+    const model::System& system() const { return *system_; }
     /// Returns whether rows are wanted at the given values only.
-    [[nodiscard]] bool is_list() const { return !asked_.between; }
-    [[nodiscard]] bool doubled() const { return asked_.doubled; }
-    [[nodiscard]] model::State start() const { return {asked_.theta0, asked_.velocity0}; }
+    bool is_list() const { return !asked_.between; }
+    bool doubled() const { return asked_.doubled; }
+    model::State start() const { return {asked_.theta0, asked_.velocity0}; }
     /// Returns whether M is harmonic, so that closed forms exist for comparison.
-    [[nodiscard]] bool harmonic() const { return !function_; }
-    [[nodiscard]] bool over_amplitude() const { return varied_ == "amplitude"; }
-    [[nodiscard]] bool over_frequency() const { return varied_ == "frequency"; }
-    [[nodiscard]] double frequency_at(double x) const {
+    bool harmonic() const { return !function_; }
+    bool over_amplitude() const { return varied_ == "amplitude"; }
+    bool over_frequency() const { return varied_ == "frequency"; }
+    double frequency_at(double x) const {
         const auto given = [&](const char* name, const std::optional<double>& option) {
             const auto varied = varied_value(name, x);
             return varied ? varied : option;
@@ -283,11 +281,9 @@ public:
         if (const auto omega = given("omega", asked_.omega)) return *omega / (2 * std::numbers::pi);
         return 1 / given("period", asked_.period).value_or(1);
     }
-    [[nodiscard]] double amplitude_at(double x) const {
-        return varied_value("amplitude", x).value_or(asked_.amplitude);
-    }
+    double amplitude_at(double x) const { return varied_value("amplitude", x).value_or(asked_.amplitude); }
     /// One column for each parameter.
-    [[nodiscard]] std::vector<VariedColumn> columns() const {
+    std::vector<VariedColumn> columns() const {
         const ColumnUnits in(system_->units);
         std::vector<VariedColumn> columns;
         for (const DataColumn& parameter : parameters_) {
@@ -302,9 +298,7 @@ public:
         return columns;
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question(double x) const {
-        return function_ ? question_by_user(x) : question_of_sine(x);
-    }
+    analysis::SteadyQuestion question(double x) const { return function_ ? question_by_user(x) : question_of_sine(x); }
 
 private:
     /// Pushes the table returned by `at`.
@@ -321,7 +315,7 @@ private:
                               lua::describe(L_, -1), varied_, x, system_->named ? "{ load = p.speed }" : "p.speed"));
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question_of_sine(double x) const {
+    analysis::SteadyQuestion question_of_sine(double x) const {
         const double frequency = frequency_at(x);
         auto M = options_.value_or_fail(model::Excitation::make(
             model::Harmonic{.amplitude = amplitude_at(x), .omega = 2 * std::numbers::pi * frequency}));
@@ -334,14 +328,13 @@ private:
         return question;
     }
 
-    [[nodiscard]] analysis::SteadyQuestion question_by_user(double x) const {
+    analysis::SteadyQuestion question_by_user(double x) const {
         push_point(x);
         const lua::Options own(L_, lua_gettop(L_), at_call);
         const auto* changed = own.object<SystemHandle>("system");
         const SystemHandle system = changed != nullptr ? *changed : system_;
         const auto names_alike = [](const model::Joint& a, const model::Joint& b) { return a.name == b.name; };
-        if (!std::equal(system_->joints.begin(), system_->joints.end(), system->joints.begin(), system->joints.end(),
-                        names_alike)) {
+        if (!std::ranges::equal(system_->joints, system->joints, names_alike)) {
             options_.fail("at", "at must return systems with the same bodies and links");
         }
         SteadyOptions asked;
@@ -359,10 +352,9 @@ private:
         return question;
     }
 
-    [[nodiscard]] analysis::Repetition repetition_at(double x, const lua::Options& own,
-                                                     const analysis::SteadyQuestion& question,
-                                                     const std::optional<double>& period) const {
-        const bool is_value = std::find(values_.begin(), values_.end(), x) != values_.end();
+    analysis::Repetition repetition_at(double x, const lua::Options& own, const analysis::SteadyQuestion& question,
+                                       const std::optional<double>& period) const {
+        const bool is_value = std::ranges::find(values_, x) != values_.end();
         // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
         if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
@@ -375,16 +367,15 @@ private:
         const model::Oscillator body = oscillator_of(*system_).value();
         if (!body.has_linear_spring()) return;
         const double f = 1 / body.natural_period(), from = values_.front();
-        const auto next =
-            std::find_if(values_.begin(), values_.end(), [&](double x) { return (x - f) * (from - f) < 0; });
+        const auto next = std::ranges::find_if(values_, [&](double x) { return (x - f) * (from - f) < 0; });
         const auto is_it = [f](double x) { return std::fabs(x / f - 1) < 1e-12; };
-        if (next == values_.end() || std::any_of(values_.begin(), values_.end(), is_it)) return;
+        if (next == values_.end() || std::ranges::any_of(values_, is_it)) return;
         const auto there = question(f);
         if (contracts(there) && steady_motion(there).status == analysis::SteadyStatus::grows) values_.insert(next, f);
     }
 
     /// The value of this parameter when the last one is x; none if it is not varied.
-    [[nodiscard]] std::optional<double> varied_value(std::string_view name, double x) const {
+    std::optional<double> varied_value(std::string_view name, double x) const {
         if (name == varied_) return x;
         return is_plane() && name == parameters_.front().name ? std::optional(beside_) : std::nullopt;
     }
@@ -472,7 +463,7 @@ struct ResponseRow {
     analysis::SteadyStatus status;  ///< status of the whole motion
     std::vector<RowOfJoint> joints;
 
-    [[nodiscard]] const analysis::SteadyMotion& motion() const { return joints.front().motion; }
+    const analysis::SteadyMotion& motion() const { return joints.front().motion; }
 };
 
 /// The motion of each body and link at this point, without its run.
@@ -489,7 +480,7 @@ ResponseRow row_of(const analysis::BranchPoint& point, double beside, std::size_
         }
     }
     const auto moves = [](const RowOfJoint& joint) { return joint.motion.status == analysis::SteadyStatus::steady; };
-    if (std::any_of(row.joints.begin(), row.joints.end(), moves)) row.status = analysis::SteadyStatus::steady;
+    if (std::ranges::any_of(row.joints, moves)) row.status = analysis::SteadyStatus::steady;
     for (RowOfJoint& joint : row.joints) joint.motion.by_returns.run = {}, joint.motion.by_returns.of_bodies = {};
     return row;
 }
@@ -579,7 +570,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
     data.companions.push_back(jumps_of(parts, over));
     data.companions.push_back(points_of(parts, over));
     if (call.harmonic() && !call.is_plane() && call.system().is_plain()) {
-        const auto [low, high] = std::minmax_element(call.values().begin(), call.values().end());
+        const auto [low, high] = std::ranges::minmax_element(call.values());
         const HarmonicSweep sweep{
             .system = oscillator_of(call.system()).value(),
             .column = over.back(),

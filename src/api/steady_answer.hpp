@@ -77,7 +77,7 @@ struct Steady {
     RunHandle run = {};                  ///< one period of a motion that is not plain; null at rest
     std::shared_ptr<Steady> whole = {};  ///< the motion of all bodies, if this is one body or link
 
-    [[nodiscard]] bool of_all() const { return !question.is_plain() && whole == nullptr; }
+    bool of_all() const { return !question.is_plain() && whole == nullptr; }
 };
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;

@@ -87,7 +87,7 @@ std::optional<Mark> marked(std::string_view statement, const std::vector<std::st
         const auto is_it = [&name](const lua::Token& token) {
             return token.text == name && token.kind != lua::TokenKind::comment;
         };
-        const auto found = std::find_if(all.begin(), all.end(), is_it);
+        const auto found = std::ranges::find_if(all, is_it);
         if (found != all.end() && (!is_value(*found) || std::none_of(found + 1, all.end(), is_it))) {
             return Mark{found->at, found->text.size()};
         }
@@ -230,7 +230,7 @@ lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const s
 /// The remarks on a message about the result of the function at the index.
 lua::Remarks remarks_on_result(const text::Error& error, const SourceText& source, int line) {
     const std::vector<lua::Token> all = lua::tokens(source.text);
-    const bool returns = std::any_of(all.begin(), all.end(), [](const lua::Token& t) { return t.is("return"); });
+    const bool returns = std::ranges::any_of(all, [](const lua::Token& t) { return t.is("return"); });
     std::vector<std::string> names = suspects(error);
     names.insert(names.end(), {"return", "function"});
     return {error.culprit == "nil" && !returns ? "; is the word return missing?" : "", excerpt(source, line, names),

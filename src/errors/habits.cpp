@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <utility>
 #include <vector>
 
-#include "errors/misspelling.hpp"
 #include "lua/bind.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
@@ -197,7 +195,7 @@ std::string decimal_comma(std::string_view statement) {
 std::string file_without_quotes(std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
-        const bool ending = std::find(file_endings.begin(), file_endings.end(), all[i].text) != file_endings.end();
+        const bool ending = std::ranges::find(file_endings, all[i].text) != file_endings.end();
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (all[i].text == name || all[i - 2].text == name)) {
             return "; write the name of a file in quotes: \"" + std::string(all[i - 2].text) + "." +
@@ -394,8 +392,8 @@ struct Stumble {
     std::vector<lua::Token> all = {};
     std::size_t at = 0;  ///< index of the rejected token in `all`; 0 if unknown or the first
 
-    [[nodiscard]] const lua::Token& token() const { return all[at]; }
-    [[nodiscard]] const lua::Token& before() const { return all[at - 1]; }
+    const lua::Token& token() const { return all[at]; }
+    const lua::Token& before() const { return all[at - 1]; }
 };
 
 bool is_operand(const lua::Token& token) {
@@ -494,9 +492,8 @@ std::string missing_star(const Stumble& stumble) {
     }
     const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
     const std::string_view name = word.substr(digits);
-    const auto is_letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; };
-    const bool product = digits > 0 && !name.empty() && is_letter(name.front()) && name != "e" && name != "E" &&
-                         std::count(word.begin(), word.end(), '.') < 2;
+    const bool product = digits > 0 && !name.empty() && text::is_name_char(name.front()) && name != "e" &&
+                         name != "E" && std::ranges::count(word, '.') < 2;
     return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
 }
 
@@ -542,7 +539,7 @@ std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::s
     if (message.opened == "{") {
         return "; is a comma missing there, or a brace?";
     }
-    const auto* const symptom = std::find_if(symptoms.begin(), symptoms.end(), [&message](const Symptom& s) {
+    const auto* const symptom = std::ranges::find_if(symptoms, [&message](const Symptom& s) {
         return (s.complaint.empty() || s.complaint == message.complaint) && (s.near.empty() || s.near == message.near);
     });
     return symptom == symptoms.end() ? "" : std::string(symptom->cure);

@@ -129,7 +129,7 @@ bool is_variable(lua_State* L, lua_Debug* frame, std::string_view name) {
     constexpr int most_levels = 50;
     const auto knows = [&](lua_Debug* of) {
         const std::vector<std::string> names = variables(L, of);
-        return std::find(names.begin(), names.end(), name) != names.end();
+        return std::ranges::find(names, name) != names.end();
     };
     if (knows(frame)) return true;
     lua_Debug caller{};
@@ -190,7 +190,7 @@ bool has_field(lua_State* L, std::string_view name) {
     if (lua_isuserdata(L, -1) == 0) return false;
     const lua::Documented found = lua::documented(L, -1);
     return found.owner != nullptr && found.member == nullptr &&
-           std::any_of(found.owner->members.begin(), found.owner->members.end(), [name](const lua::Member& member) {
+           std::ranges::any_of(found.owner->members, [name](const lua::Member& member) {
                return member.kind == lua::Kind::field && member.name == name;
            });
 }
@@ -208,7 +208,7 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
         lua_pop(L, 1);
     }
     lua_pop(L, 1);
-    std::sort(owners.begin(), owners.end());
+    std::ranges::sort(owners);
     return text::did_you_mean_one_of(owners);
 }
 
@@ -286,7 +286,7 @@ std::vector<std::string> member_names(lua_State* L) {
         }
     }
     lua_settop(L, top);
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
@@ -314,7 +314,7 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
             lua_pop(L, 1);
             whole_name.append(".").append(all[i + 2].text);
             hint = text::did_you_mean(all[i + 2].text, names);
-            if (hint.empty() || std::find(names.begin(), names.end(), all[i + 2].text) != names.end()) continue;
+            if (hint.empty() || std::ranges::find(names, all[i + 2].text) != names.end()) continue;
         } else if (is_nil_global(L, frame, all, i)) {
             hint = similar_global(L, all[i].text);
         } else {
@@ -395,9 +395,8 @@ bool has_method(lua_State* L, int index, std::string_view name) {
     const lua::Documented found = lua::documented(L, index);
     if (found.owner == nullptr || found.member != nullptr || lua_isuserdata(L, index) == 0) return false;
     const auto& members = found.owner->members;
-    return std::any_of(members.begin(), members.end(), [name](const lua::Member& member) {
-        return member.kind == lua::Kind::method && member.name == name;
-    });
+    return std::ranges::any_of(
+        members, [name](const lua::Member& member) { return member.kind == lua::Kind::method && member.name == name; });
 }
 
 /// Returns whether an object among the arguments of the innermost calls has a method of that name.

@@ -1,28 +1,22 @@
 #include "errors/source_text.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include "files/file.hpp"
 #include "lua/tokens.hpp"
 #include "source/function_source.hpp"
+#include "text/words.hpp"
 
 namespace dinal::errors {
-namespace {
-
-bool is_digit(char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
-}
-
-}  // namespace
 
 std::optional<Message> parse_message(std::string_view message) {
     for (std::size_t colon = message.find(':'); colon != std::string_view::npos; colon = message.find(':', colon + 1)) {
         std::size_t end = colon + 1;
         int line = 0;
-        while (end < message.size() && is_digit(message[end]) && line < 100'000'000) {
+        while (end < message.size() && text::is_digit(message[end]) && line < 100'000'000) {
             line = 10 * line + (message[end++] - '0');
         }
         if (line > 0 && message.substr(end, 2) == ": ") {
@@ -47,15 +41,9 @@ bool find_frame(lua_State* L, const Message& message, lua_Debug& frame) {
 }
 
 std::string_view SourceText::line(int number) const {
-    std::size_t begin = 0;
-    for (int n = first_line; n < number && begin != std::string::npos; ++n) {
-        begin = text.find('\n', begin);
-        begin += begin == std::string::npos ? 0 : 1;
-    }
-    if (number < first_line || begin == std::string::npos) {
-        return {};
-    }
-    return std::string_view(text).substr(begin, text.find('\n', begin) - begin);
+    const std::vector<std::string_view> lines = text::split(text, '\n');
+    const auto place = static_cast<std::size_t>(number - first_line);
+    return number < first_line || place >= lines.size() ? std::string_view() : lines[place];
 }
 
 std::string_view SourceText::statement(int number) const {

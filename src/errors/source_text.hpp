@@ -26,9 +26,9 @@ struct SourceText {
     int first_line = 1;
 
     /// The line of that number without its newline; empty if it does not exist.
-    [[nodiscard]] std::string_view line(int number) const;
+    std::string_view line(int number) const;
     /// The text from the beginning of that line until its brackets are closed.
-    [[nodiscard]] std::string_view statement(int number) const;
+    std::string_view statement(int number) const;
 };
 
 /// The text of the frame's chunk, or at least of its function.

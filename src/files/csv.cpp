@@ -87,7 +87,7 @@ void split(std::string_view line, Separator separator, std::vector<std::string_v
 /// Returns whether a field begins with a quote that the line does not close. (A quote within a word means inches.)
 bool is_left_open(std::string_view line) {
     const std::size_t last = line.rfind('"');
-    if (last == std::string_view::npos || std::count(line.begin(), line.end(), '"') % 2 == 0) return false;
+    if (last == std::string_view::npos || std::ranges::count(line, '"') % 2 == 0) return false;
     constexpr std::string_view before_fields = ",; \t";
     return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
 }
@@ -141,9 +141,8 @@ public:
                             "found " + std::to_string(fields_.size()) + " columns, and names has " +
                                 std::to_string(options_.names.size()));
         }
-        const bool named =
-            std::none_of(fields_.begin(), fields_.end(), [this](auto field) { return is_number(field); }) ||
-            is_word_above_numbers(fields_.front());
+        const bool named = std::ranges::none_of(fields_, [this](auto field) { return is_number(field); }) ||
+                           is_word_above_numbers(fields_.front());
         std::optional<text::Error> fault = take_names(named);
         if (named) rows_.erase(rows_.begin());
         if (named && !rows_.empty() && may_be_units()) {
@@ -197,12 +196,12 @@ private:
     }
 
     /// Returns whether commas are decimal: also with tabs, unless there are decimal points, when 1,5 is an error.
-    [[nodiscard]] bool decimal_comma() const {
+    bool decimal_comma() const {
         return separator_ == Separator::semicolon || (separator_ == Separator::tab && !has_points_);
     }
 
-    [[nodiscard]] bool has_decimal_points() const {
-        return std::any_of(rows_.begin(), rows_.end(), [](const Row& row) {
+    bool has_decimal_points() const {
+        return std::ranges::any_of(rows_, [](const Row& row) {
             for (std::size_t at = row.text.find('.'); at != std::string_view::npos; at = row.text.find('.', at + 1)) {
                 if (at > 0 && at + 1 < row.text.size() && text::is_digit(row.text[at - 1]) &&
                     text::is_digit(row.text[at + 1]))
@@ -232,9 +231,9 @@ private:
 
     /// Returns whether each field, those of names included, is in quotes: then quotes do not mean words.
     [[nodiscard]] bool are_all_in_quotes() {
-        return rows_.size() > 1 && std::all_of(rows_.begin(), rows_.end(), [this](const Row& row) {
+        return rows_.size() > 1 && std::ranges::all_of(rows_, [this](const Row& row) {
                    split(row.text, separator_, fields_);
-                   return std::all_of(fields_.begin(), fields_.end(), [](std::string_view field) {
+                   return std::ranges::all_of(fields_, [](std::string_view field) {
                        return field.size() >= 2 && field.front() == '"' && field.back() == '"';
                    });
                });
@@ -245,7 +244,7 @@ private:
         return quoted ? text::trimmed(field.substr(1, field.size() - 2)) : std::string_view();
     }
 
-    [[nodiscard]] std::optional<double> number_in(std::string_view field) const {
+    std::optional<double> number_in(std::string_view field) const {
         if (all_in_quotes_) return parse_field(in_quotes(field), has_quoted_commas_ || decimal_comma());
         if (has_quoted_commas_ && field.starts_with('"')) {
             if (const std::string_view inside = in_quotes(field); !inside.empty()) return parse_field(inside, true);
@@ -253,9 +252,7 @@ private:
         return parse_field(field, decimal_comma());
     }
 
-    [[nodiscard]] bool is_number(std::string_view field) const {
-        return !field.empty() && number_in(field).has_value();
-    }
+    bool is_number(std::string_view field) const { return !field.empty() && number_in(field).has_value(); }
 
     /// Drops the last line if a logger was switched off while writing it.
     void leave_out_cut_line() {
@@ -267,7 +264,7 @@ private:
     }
 
     /// Returns whether "t,100,200" is a line of names: the first column has numbers in all other rows.
-    [[nodiscard]] bool is_word_above_numbers(std::string_view first) const {
+    bool is_word_above_numbers(std::string_view first) const {
         if (rows_.size() < 2 || first.empty() || is_number(first)) return false;
         std::vector<std::string_view> fields;
         return std::all_of(rows_.begin() + 1, rows_.end(), [&](const Row& row) {
@@ -292,11 +289,11 @@ private:
 
     /// Returns whether the second line may contain units: it has words and gaps, and each word has only numbers below
     /// it.
-    [[nodiscard]] bool may_be_units() const {
+    bool may_be_units() const {
         std::vector<std::string_view> units, fields;
         split(rows_.front().text, separator_, units);
         if (units.size() != result_.columns.size() ||
-            std::any_of(units.begin(), units.end(), [this](auto field) { return is_number(field); }))
+            std::ranges::any_of(units, [this](auto field) { return is_number(field); }))
             return false;
         bool has_numbers = false;
         for (std::size_t row = 1; row < rows_.size(); ++row) {
@@ -370,7 +367,7 @@ private:
     /// Reads word columns again, as they are recognised only at the end.
     void take_words() {
         std::vector<ReadColumn>& columns = result_.columns;
-        if (std::none_of(columns.begin(), columns.end(), [](const ReadColumn& c) { return c.of_words; })) return;
+        if (std::ranges::none_of(columns, [](const ReadColumn& c) { return c.of_words; })) return;
         for (const Row& row : rows_) {
             split(row.text, separator_, fields_);
             for (std::size_t i = 0; i < columns.size(); ++i) {
@@ -412,8 +409,7 @@ text::Expected<Table> table_of(ReadColumns content) {
     table.values.resize(rows, static_cast<Eigen::Index>(content.columns.size()));
     for (ReadColumn& column : content.columns) {
         if (!column.fault.empty()) return text::Error{column.fault};
-        std::copy(column.numbers.begin(), column.numbers.end(),
-                  table.values.col(static_cast<Eigen::Index>(table.names.size())).data());
+        std::ranges::copy(column.numbers, table.values.col(static_cast<Eigen::Index>(table.names.size())).data());
         table.names.push_back(std::move(column.name));
     }
     return table;
@@ -423,7 +419,7 @@ namespace {
 
 /// Writes a comment, possibly a whole script: each line needs its sign. A NUL would make the file unreadable.
 void write_comment(OutputFile& file, std::string text) {
-    std::replace(text.begin(), text.end(), '\0', ' ');
+    std::ranges::replace(text, '\0', ' ');
     if (text.empty()) {
         file.write("#\n");
     }

@@ -386,7 +386,7 @@ void note_temporary(const std::string& name) {
     for (Slot& slot : noted_names) {
         Use free = Use::free;
         if (!slot.use.compare_exchange_strong(free, Use::filling)) continue;
-        std::copy(name.begin(), name.end(), slot.name.begin());
+        std::ranges::copy(name, slot.name.begin());
         slot.name[name.size()] = '\0';
         slot.use = Use::taken;
         return;

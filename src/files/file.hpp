@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,18 +13,17 @@
 #include <vector>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::files {
 
 /// A file descriptor that closes itself.
-class Descriptor {
+class Descriptor : text::NotCopied {
 public:
     explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
     ~Descriptor() { close(); }
     void close();
-    [[nodiscard]] int number() const { return number_; }
+    int number() const { return number_; }
 
 private:
     int number_;
@@ -50,8 +48,6 @@ public:
 
     OutputFile(OutputFile&& other) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
-    OutputFile(const OutputFile&) = delete;
-    OutputFile& operator=(const OutputFile&) = delete;
     ~OutputFile();
 
     /// Stores a failure for commit(), so that writers need not check every call.
@@ -62,7 +58,7 @@ public:
     void used(const char* end);
 
     /// Returns whether writing has failed, so that further output is useless.
-    [[nodiscard]] bool failed() const { return failure_ != 0; }
+    bool failed() const { return failure_ != 0; }
 
     /// Writes the rest and replaces the old file. Call once.
     text::Expected<Written> commit();

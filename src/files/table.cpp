@@ -37,12 +37,12 @@ std::optional<std::size_t> place_without_unit(std::span<const std::string> names
         return whole.starts_with(name) &&
                ((rest.starts_with(" (") && rest.ends_with(')')) || (rest.starts_with(" [") && rest.ends_with(']')));
     };
-    if (std::count_if(names.begin(), names.end(), fits) != 1) return std::nullopt;
-    return static_cast<std::size_t>(std::find_if(names.begin(), names.end(), fits) - names.begin());
+    if (std::ranges::count_if(names, fits) != 1) return std::nullopt;
+    return static_cast<std::size_t>(std::ranges::find_if(names, fits) - names.begin());
 }
 
 text::Expected<Eigen::Index> find_column(std::span<const std::string> names, std::string_view name) {
-    const auto found = std::find(names.begin(), names.end(), name);
+    const auto found = std::ranges::find(names, name);
     if (found == names.end()) {
         if (const auto place = place_without_unit(names, name)) return static_cast<Eigen::Index>(*place);
         return text::Error{.sentence = "there is no column '" + std::string(name) + "' among " + list_of(names),

@@ -17,8 +17,8 @@ public:
 
     /// Goes to the next line; returns false at the end of the text, and if shall_stop() returns true.
     bool next();
-    [[nodiscard]] std::string_view text() const { return line_; }
-    [[nodiscard]] std::size_t number() const { return number_; }
+    std::string_view text() const { return line_; }
+    std::size_t number() const { return number_; }
 
 private:
     std::string_view rest_;

@@ -28,7 +28,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
 
 bool has_word(std::string_view words, std::string_view wanted) {
     const std::vector<std::string_view> all = words_of(words);
-    return std::find(all.begin(), all.end(), wanted) != all.end();
+    return std::ranges::find(all, wanted) != all.end();
 }
 
 /// An entry of the manual.
@@ -85,7 +85,7 @@ std::string entries_named(std::string_view name, const terminal::Display& screen
 /// Lower case, with blanks for underscores: "dead zone" finds dead_zone.
 std::string searchable(std::string_view text) {
     std::string result = text::lower(text);
-    std::replace(result.begin(), result.end(), '_', ' ');
+    std::ranges::replace(result, '_', ' ');
     return result;
 }
 
@@ -103,8 +103,8 @@ std::string entries_that_mention(std::string_view wanted, const terminal::Displa
         }
         const auto has_words = [&words](const std::string& text) {
             const std::vector<std::string_view> each = words_of(words);
-            return std::all_of(each.begin(), each.end(),
-                               [&text](std::string_view word) { return text.find(word) != std::string::npos; });
+            return std::ranges::all_of(each,
+                                       [&text](std::string_view word) { return text.find(word) != std::string::npos; });
         };
         if (has_words(name)) {
             in_name.push_back(entry);
@@ -441,14 +441,14 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 24> foreign 
 std::string in_english(std::string_view words) {
     const auto translated = [](std::string_view word) {
         std::string wanted = text::lower(word);
-        std::replace(wanted.begin(), wanted.end(), ' ', '-');
+        std::ranges::replace(wanted, ' ', '-');
         const auto* const found =
-            std::find_if(foreign.begin(), foreign.end(), [&](const auto& row) { return has_word(row.first, wanted); });
+            std::ranges::find_if(foreign, [&](const auto& row) { return has_word(row.first, wanted); });
         return found == foreign.end() ? word : found->second;
     };
     if (const std::string_view whole = translated(words); whole != words) return std::string(whole);
     std::vector<std::string_view> english = words_of(words);
-    std::transform(english.begin(), english.end(), english.begin(), translated);
+    std::ranges::transform(english, english.begin(), translated);
     return fmt::format("{}", fmt::join(english, " "));
 }
 
@@ -480,7 +480,7 @@ std::vector<std::string> help_names() {
         names.push_back(written_name(*section, *member));
         names.emplace_back(member->name);
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }

@@ -1,4 +1,4 @@
-// The texts of help(): entries, searches, the list of everything.
+// The function help() and its texts: entries, searches, the list of everything.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 #include "help/library.hpp"
 #include "terminal/display.hpp"
+#include "text/expected.hpp"
 
 namespace dinal::help {
 
@@ -37,5 +38,15 @@ std::vector<std::string> help_option_names();
 
 /// Related entries: at most five names that help_about() knows.
 std::vector<std::string> see_also(const Section& section, const lua::Member& member);
+
+extern const lua::Class help_functions;  // help
+void register_help(lua_State* L);
+
+// docs/manual.md and docs/manual/, generated from the documentation of the API.
+
+/// Returns a page. "" is docs/manual.md, which links to the others by an index of all names. A topic is
+/// docs/manual/TOPIC.md, with entries without options listed in one line each. "all" has every entry as help() prints
+/// it, with its example, for the tests. Fails if there is no such page.
+text::Expected<std::string> manual(std::string_view page = "");
 
 }  // namespace dinal::help

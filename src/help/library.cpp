@@ -3,14 +3,13 @@
 
 #include "api/classes.hpp"
 #include "errors/error_remarks.hpp"
-#include "help/help.hpp"
+#include "help/help_text.hpp"
 #include "lab/lab_course.hpp"
 #include "lab/report.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/worker_state.hpp"
-#include "source/value_text.hpp"
 #include "sweep/sweep_run.hpp"
 #include "text/version.hpp"
 

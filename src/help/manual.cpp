@@ -1,4 +1,3 @@
-#include "help/manual.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,7 +8,6 @@
 
 #include "help/help_text.hpp"
 #include "help/signature.hpp"
-#include "text/characters.hpp"
 #include "text/version.hpp"
 #include "text/words.hpp"
 
@@ -53,7 +51,7 @@ const std::vector<Page>& manual_pages() {
 
 const Page& page_of(const Section& section) {
     const auto has = [&section](const Page& topic) {
-        return std::find(topic.sections.begin(), topic.sections.end(), section.title) != topic.sections.end();
+        return std::ranges::find(topic.sections, section.title) != topic.sections.end();
     };
     const auto found = std::find_if(manual_pages().begin(), manual_pages().end(), has);
     return found == manual_pages().end() ? manual_pages().back() : *found;
@@ -115,8 +113,7 @@ std::vector<Listed> listed_options() {
         for (const lua::Member& member : section.description->members) {
             for (const text::Call* call : calls_of(member.doc)) {
                 for (const OptionLine& line : option_lines(call->options)) {
-                    const auto known = std::find_if(all.begin(), all.end(),
-                                                    [&line](const Listed& each) { return each.sense == sense(line); });
+                    const auto known = std::ranges::find(all, sense(line), &Listed::sense);
                     if (known == all.end()) {
                         all.push_back({sense(line), listed(line), line.option});
                     } else {
@@ -141,8 +138,7 @@ std::vector<Listed> shared_options() {
         const auto has_the_name = [&](const Listed& other) {
             return &other != &each && other.name == each.name && (is_long(other) || is_short(other));
         };
-        if (is_long(each) || (is_short(each) && std::none_of(all.begin(), all.end(), has_the_name)))
-            shared.push_back(each);
+        if (is_long(each) || (is_short(each) && std::ranges::none_of(all, has_the_name))) shared.push_back(each);
     }
     return shared;
 }
@@ -174,8 +170,8 @@ struct Writer {
     void options(const text::Call& call) {
         std::string elsewhere;
         for (const OptionLine& line : option_lines(call.options)) {
-            const bool is_shared = std::any_of(shared.begin(), shared.end(),
-                                               [&line](const Listed& each) { return each.sense == sense(line); });
+            const bool is_shared =
+                std::ranges::any_of(shared, [&line](const Listed& each) { return each.sense == sense(line); });
             if (is_shared) {
                 elsewhere += fmt::format("{}`{}`", elsewhere.empty() ? "" : ", ", line.option);
             } else {
@@ -194,7 +190,7 @@ struct Writer {
     }
     void row(const lua::Doc& doc) {
         std::string summary = doc.summary;
-        std::replace(summary.begin(), summary.end(), '\n', ' ');
+        std::ranges::replace(summary, '\n', ' ');
         text += fmt::format("- `{}`: {}\n", signature(doc), summary);
     }
     void section(const Section& section) {

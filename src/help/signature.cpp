@@ -18,8 +18,8 @@ std::string with_default(const text::Option& option) {
 }
 
 bool is_class_of_objects(const Section& section) {
-    return std::none_of(section.description->members.begin(), section.description->members.end(),
-                        [](const lua::Member& member) { return member.kind == lua::Kind::function; });
+    return std::ranges::none_of(section.description->members,
+                                [](const lua::Member& member) { return member.kind == lua::Kind::function; });
 }
 
 }  // namespace

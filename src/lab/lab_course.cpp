@@ -301,7 +301,7 @@ void keep_wrong_value(const LabMark& mark) {
 }
 
 void remember(const LabMark& mark) {
-    const auto found = std::find_if(session_answers.begin(), session_answers.end(), [&](const LabMark& answer) {
+    const auto found = std::ranges::find_if(session_answers, [&](const LabMark& answer) {
         return answer.number == mark.number && answer.question == mark.question;
     });
     found != session_answers.end() ? * found = mark : session_answers.emplace_back(mark);
@@ -479,13 +479,13 @@ int lab_experiment(lua_State* L) {
 
 /// Adds a wrong value; returns false if it is already known and does not count again.
 bool add_wrong(LabAnswer& answer, double value) {
-    if (std::find(answer.wrong.begin(), answer.wrong.end(), value) != answer.wrong.end()) return false;
+    if (std::ranges::find(answer.wrong, value) != answer.wrong.end()) return false;
     answer.wrong.push_back(value);
     return true;
 }
 
 LabAnswer& answer_of(LabDesk& desk, const std::string& question) {
-    const auto found = std::find_if(desk.answers.begin(), desk.answers.end(), [&](const LabAnswer& answer) {
+    const auto found = std::ranges::find_if(desk.answers, [&](const LabAnswer& answer) {
         return answer.number == desk.number && answer.question == question;
     });
     if (found != desk.answers.end()) return *found;
@@ -522,7 +522,7 @@ double value_at_2(lua_State* L) {
 
 bool is_judged(const LabAnswer& answer, double value) {
     return answer.right || answer.wrong.size() < most_wrong ||
-           std::find(answer.wrong.begin(), answer.wrong.end(), value) != answer.wrong.end();
+           std::ranges::find(answer.wrong, value) != answer.wrong.end();
 }
 
 /// The course's sentence about a question in the student's language: a format filled with the values on the top of the
@@ -587,9 +587,8 @@ int lab_marks(lua_State* L) {
     LabDesk& desk = desk_with_number(L, "lab.marks");
     std::vector<LabAnswer> answers = desk.answers;
     std::erase_if(answers, [&](const LabAnswer& a) { return a.tries == 0 || a.number != desk.number; });
-    std::sort(answers.begin(), answers.end(),
-              [](const LabAnswer& a, const LabAnswer& b) { return a.question < b.question; });
-    const auto right = std::count_if(answers.begin(), answers.end(), [](const LabAnswer& a) { return a.right; });
+    std::ranges::sort(answers, {}, &LabAnswer::question);
+    const auto right = std::ranges::count_if(answers, [](const LabAnswer& a) { return a.right; });
     Data data = table_of(answers, ListColumn{"question", &LabAnswer::question},
                          ListColumn{"verdict", [](const LabAnswer& a) { return a.right ? "right" : "wrong"; }},
                          ListColumn{"tries", &LabAnswer::tries}, ListColumn{"said", &LabAnswer::said});

@@ -13,7 +13,6 @@
 #include <string_view>
 #include <utility>
 
-#include "api/classes.hpp"
 #include "api/lua_run.hpp"
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
@@ -23,7 +22,7 @@
 #include "lua/worker_state.hpp"
 #include "plots/svg_words.hpp"
 #include "source/value_text.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 #include "text/sentences.hpp"
 #include "text/words.hpp"
 
@@ -85,7 +84,7 @@ struct HtmlWriter {
         for (const std::string_view one : paragraphs(item.text)) page += "<p>" + text::html(one) + "</p>\n";
     }
     void operator()(const ReportLines& item) {
-        const bool fits = std::count(item.text.begin(), item.text.end(), '\n') < most_lines_together;
+        const bool fits = std::ranges::count(item.text, '\n') < most_lines_together;
         const std::string lines = (fits ? "<pre>" : "<pre class=\"long\">") + text::html(item.text) + "</pre>\n";
         page += item.caption.empty()
                     ? lines

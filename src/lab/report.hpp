@@ -3,7 +3,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "api/data.hpp"
 #include "api/picture.hpp"
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::lab {
 
@@ -57,13 +57,11 @@ std::string html_of(const Report& report);
 // --report: turns the output and pictures of a script into a page.
 
 /// While this object lives, standard output and shown pictures are collected in a report, in their order.
-class ScriptReport {
+class ScriptReport : text::NotCopied {
 public:
     /// `errors`: the script's standard error, collected elsewhere.
     ScriptReport(std::string script, const std::string& errors);
     ~ScriptReport();
-    ScriptReport(const ScriptReport&) = delete;
-    ScriptReport& operator=(const ScriptReport&) = delete;
 
     /// Writes the page into the current folder: lab.html for ../lab.lua, with the script and errors at its end, and
     /// restores standard output. Returns the file name.

@@ -14,7 +14,6 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
 #include "lua/lua_headers.hpp"
 #include "lua/memory_limit.hpp"

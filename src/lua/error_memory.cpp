@@ -97,7 +97,7 @@ const text::Error* facts_of(lua_State* L, std::string_view message) {
     if (memory == nullptr) {
         return nullptr;
     }
-    const auto fact = std::find_if(memory->facts.begin(), memory->facts.end(), [message](const text::Error& error) {
+    const auto fact = std::ranges::find_if(memory->facts, [message](const text::Error& error) {
         return message.find(error.message()) != std::string_view::npos;
     });
     return fact == memory->facts.end() ? nullptr : &*fact;

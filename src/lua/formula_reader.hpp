@@ -35,7 +35,7 @@ struct Arguments {
     bool of_speed = false, timeless = false;
     std::vector<std::string> bodies = {}, states = {};
     bool operator==(const Arguments&) const = default;
-    [[nodiscard]] std::size_t state_count() const { return (of_speed ? 1 : 0) + 2 * bodies.size() + states.size(); }
+    std::size_t state_count() const { return (of_speed ? 1 : 0) + 2 * bodies.size() + states.size(); }
 };
 
 struct Reading {

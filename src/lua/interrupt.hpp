@@ -13,6 +13,7 @@
 #include <string>
 
 #include "lua/lua_headers.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::lua {
 
@@ -31,12 +32,10 @@ void set_time_limit(double seconds);
 [[nodiscard]] double time_limit() noexcept;
 
 /// The time limit counts while this object lives. Nested objects have no effect.
-class TimeAllowance {
+class TimeAllowance : text::NotCopied {
 public:
     TimeAllowance();
     ~TimeAllowance();
-    TimeAllowance(const TimeAllowance&) = delete;
-    TimeAllowance& operator=(const TimeAllowance&) = delete;
 };
 
 enum class Stop { none, interrupted, time, memory };
@@ -76,12 +75,10 @@ std::string stopped_at();
 /// While this object lives, a stop is raised repeatedly in the code on `L`, so that no pcall can swallow it. Use one
 /// for each chunk, around its outermost lua_pcall; the time limit runs meanwhile. Outside, Ctrl-C only sets the flag. A
 /// nested scope belongs to the outer one, so that a Ctrl-C between two of them is not lost.
-class InterruptScope {
+class InterruptScope : text::NotCopied {
 public:
     explicit InterruptScope(lua_State* L);
     ~InterruptScope();
-    InterruptScope(const InterruptScope&) = delete;
-    InterruptScope& operator=(const InterruptScope&) = delete;
 
 private:
     lua_State* L_;
@@ -96,20 +93,18 @@ struct WorkerWatch {
     std::atomic<double> since = 0;                      ///< start of the task, seconds of the watcher's clock
     const WorkerWatch* outer = nullptr;                 ///< watch of the worker that waits for this one
 
-    [[nodiscard]] bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
-    [[nodiscard]] bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }
+    bool has_given_up() const noexcept { return given_up != 0 && given_up == task; }
+    bool must_stop() const noexcept { return has_given_up() || (outer != nullptr && outer->must_stop()); }
 };
 /// The watch of this thread, or nullptr.
 [[nodiscard]] const WorkerWatch* watch_here() noexcept;
 
 /// Marks a thread that runs Lua in its own state. While this object lives, a stop requested here or by a nudge reaches
 /// the code on `L`, and no progress is shown. The InterruptScope is that of the program.
-class WorkerScope {
+class WorkerScope : text::NotCopied {
 public:
     explicit WorkerScope(lua_State* L, const WorkerWatch* watch = nullptr);
     ~WorkerScope();
-    WorkerScope(const WorkerScope&) = delete;
-    WorkerScope& operator=(const WorkerScope&) = delete;
 
 private:
     std::atomic<lua_State*> running_;
@@ -122,12 +117,10 @@ private:
 void nudge(pthread_t worker) noexcept;
 
 /// While this object lives, new threads receive no signal except a nudge: Ctrl-C is for the program's own thread.
-class SignalsForOthers {
+class SignalsForOthers : text::NotCopied {
 public:
     SignalsForOthers();
     ~SignalsForOthers();
-    SignalsForOthers(const SignalsForOthers&) = delete;
-    SignalsForOthers& operator=(const SignalsForOthers&) = delete;
 
 private:
     sigset_t before_{};
@@ -137,22 +130,18 @@ private:
 void open_coroutines(lua_State* L);
 
 /// While this object lives, files are read and written completely even if the script was stopped.
-class InSpiteOfStop {
+class InSpiteOfStop : text::NotCopied {
 public:
     InSpiteOfStop();
     ~InSpiteOfStop();
-    InSpiteOfStop(const InSpiteOfStop&) = delete;
-    InSpiteOfStop& operator=(const InSpiteOfStop&) = delete;
 };
 
 /// Records `callee`, called from `caller`, as the running Lua thread for the handler of Ctrl-C, while this object
 /// lives.
-class RunningThread {
+class RunningThread : text::NotCopied {
 public:
     RunningThread(lua_State* caller, lua_State* callee);
     ~RunningThread();
-    RunningThread(const RunningThread&) = delete;
-    RunningThread& operator=(const RunningThread&) = delete;
 
 private:
     lua_State* caller_;

@@ -15,7 +15,7 @@ std::vector<std::string> text_keys(lua_State* L, int index) {
     for (lua_pushnil(L); lua_next(L, index) != 0; lua_pop(L, 1)) {
         if (lua_type(L, -2) == LUA_TSTRING) keys.emplace_back(text_at(L, -2));
     }
-    std::sort(keys.begin(), keys.end());
+    std::ranges::sort(keys);
     return keys;
 }
 
@@ -31,7 +31,7 @@ std::vector<std::string> free_names(std::string_view source) {
         if (token.kind == TokenKind::comment) {
             continue;
         }
-        const bool fresh = std::find(names.begin(), names.end(), token.text) == names.end();
+        const bool fresh = std::ranges::find(names, token.text) == names.end();
         if (token.kind == TokenKind::name && !field && fresh) {
             names.emplace_back(token.text);
         }

@@ -37,8 +37,6 @@ public:
     explicit MemoryCharge(std::size_t bytes);
     MemoryCharge(MemoryCharge&& other) noexcept;
     MemoryCharge& operator=(MemoryCharge&& other) noexcept;
-    MemoryCharge(const MemoryCharge&) = delete;
-    MemoryCharge& operator=(const MemoryCharge&) = delete;
     ~MemoryCharge();
 
 private:

@@ -39,8 +39,7 @@ std::string cures(const Names& unknown, const Names& known) {
 std::string options_of_neighbour(Names& unknown, const text::Call* neighbour) {
     if (neighbour == nullptr) return "";
     const auto has = [&](std::string_view name) {
-        return std::any_of(neighbour->options.begin(), neighbour->options.end(),
-                           [&](const text::Option& option) { return name == option.name; });
+        return std::ranges::any_of(neighbour->options, [&](const text::Option& option) { return name == option.name; });
     };
     const auto theirs = std::stable_partition(unknown.begin(), unknown.end(), [&](auto name) { return !has(name); });
     const Names moved(theirs, unknown.end());
@@ -104,7 +103,7 @@ void Options::check_table() {
 }
 
 void Options::refuse(std::vector<std::string_view>& unknown) const {
-    std::sort(unknown.begin(), unknown.end());  // tables are unordered; the message must always be the same
+    std::ranges::sort(unknown);  // tables are unordered; the message must always be the same
     Names known;
     for (const text::Option& option : call_.options) known.emplace_back(option.name);
     const std::string names = joined(unknown, " and ", "'"), first(unknown.front());
@@ -209,7 +208,7 @@ std::size_t Options::choice_on_top(const text::Option& option) const {
     const Names known(option.choices.begin(), option.choices.end());
     const bool is_text = lua_type(L_, -1) == LUA_TSTRING;
     const std::string value = is_text ? lua_tostring(L_, -1) : "";
-    const auto found = std::find(known.begin(), known.end(), value);
+    const auto found = std::ranges::find(known, value);
     if (!is_text || found == known.end()) {
         fail({.sentence =
                   fmt::format("{} must be {}, got {}", option.name, joined(known, " or ", "'"), describe(L_, -1)),

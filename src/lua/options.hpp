@@ -26,19 +26,19 @@ public:
     }
 
     /// Returns whether the option was given when the call began.
-    [[nodiscard]] bool has(std::string_view name) const { return given_[place(name)]; }
+    bool has(std::string_view name) const { return given_[place(name)]; }
     /// Pushes the option unchanged, nil if absent.
     void push(std::string_view name) const;
     /// The option as declared in its row, which must not be of the kind `other`.
-    [[nodiscard]] text::OptionValue value(const text::Option& option) const;
+    text::OptionValue value(const text::Option& option) const;
 
     /// For an option of the kind `other`: a number in the range of its row, or the finite numbers of a table or vector
     /// (empty if absent).
-    [[nodiscard]] double number(std::string_view name) const;
-    [[nodiscard]] std::vector<double> numbers(std::string_view name) const;
+    double number(std::string_view name) const;
+    std::vector<double> numbers(std::string_view name) const;
     /// The object of one of dinal's classes, kept alive by the option table; nullptr if absent and optional.
     template <class T>
-    [[nodiscard]] const T* object(std::string_view name) const {
+    const T* object(std::string_view name) const {
         push(name);
         const auto* found = test<T>(L_, -1);
         if (found == nullptr && (!lua_isnil(L_, -1) || row(name).otherwise == text::needed)) {
@@ -49,9 +49,9 @@ public:
     }
 
     /// The name of the call, with which all error sentences begin.
-    [[nodiscard]] const char* call() const { return call_.name; }
+    const char* call() const { return call_.name; }
     /// The row of an existing option.
-    [[nodiscard]] const text::Option& row(std::string_view name) const;
+    const text::Option& row(std::string_view name) const;
 
     /// Raises the error with the call in front: "CALL: SENTENCE".
     [[noreturn]] void fail(text::Error error) const;
@@ -78,12 +78,12 @@ private:
     /// Raises an error for unknown options.
     [[noreturn]] void refuse(std::vector<std::string_view>& unknown) const;
     /// The index of the option's row; `most_options` if there is none.
-    [[nodiscard]] std::size_t place(std::string_view name) const;
+    std::size_t place(std::string_view name) const;
     void fill(const void* owner, void* object) const;
     /// Checks a row and the following rows that are alternatives to it.
     void check_alternatives(std::size_t row) const;
-    [[nodiscard]] double number_on_top(const text::Option& option) const;
-    [[nodiscard]] std::size_t choice_on_top(const text::Option& option) const;
+    double number_on_top(const text::Option& option) const;
+    std::size_t choice_on_top(const text::Option& option) const;
 
     lua_State* L_;
     int index_;

@@ -30,8 +30,8 @@ struct Prototype {
     std::vector<int> lines;               ///< source line of each instruction
     std::vector<std::string_view> names;  ///< names of the upvalues
 
-    [[nodiscard]] std::size_t size() const { return code.size() / 4; }
-    [[nodiscard]] std::uint32_t instruction(std::size_t at) const;
+    std::size_t size() const { return code.size() / 4; }
+    std::uint32_t instruction(std::size_t at) const;
 };
 
 /// The output of lua_dump for the Lua function at the index; stripped: without debug information.

@@ -151,7 +151,7 @@ std::vector<std::string> users_globals(lua_State* L) {
     lua_settop(L, top);
     // The program sets these after the others were recorded.
     std::erase_if(names, [](std::string_view name) { return name == "dinal" || name == "arg"; });
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     return names;
 }
 

@@ -23,7 +23,7 @@ public:
         std::vector<Token> found;
         while (skip_space()) {
             Token token = next();
-            line_ += static_cast<int>(std::count(token.text.begin(), token.text.end(), '\n'));
+            line_ += static_cast<int>(std::ranges::count(token.text, '\n'));
             at_ = token.end();
             found.push_back(token);
         }
@@ -38,11 +38,11 @@ private:
         return at_ < text_.size();
     }
 
-    [[nodiscard]] Token token(TokenKind kind, std::size_t end, bool open = false) const {
+    Token token(TokenKind kind, std::size_t end, bool open = false) const {
         return {kind, text_.substr(at_, end - at_), at_, line_, open};
     }
 
-    [[nodiscard]] char peek(std::size_t place) const { return place < text_.size() ? text_[place] : '\0'; }
+    char peek(std::size_t place) const { return place < text_.size() ? text_[place] : '\0'; }
 
     Token next() {
         const char c = text_[at_];
@@ -120,7 +120,7 @@ private:
     }
 
     /// The number of = in the long bracket at `open`; -1 if there is none.
-    [[nodiscard]] int long_bracket(std::size_t open) const {
+    int long_bracket(std::size_t open) const {
         if (peek(open) != '[') {
             return -1;
         }

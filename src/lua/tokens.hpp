@@ -16,12 +16,10 @@ struct Token {
     int line = 1;        ///< line of its first byte
     bool open = false;   ///< whether it is a string or long comment without an end
 
-    [[nodiscard]] std::size_t end() const { return at + text.size(); }
-    [[nodiscard]] bool is(std::string_view other) const { return kind != TokenKind::string && text == other; }
+    std::size_t end() const { return at + text.size(); }
+    bool is(std::string_view other) const { return kind != TokenKind::string && text == other; }
     /// 1 for an opening bracket, -1 for a closing one, otherwise 0.
-    [[nodiscard]] int nesting() const {
-        return is("(") || is("{") || is("[") ? 1 : is(")") || is("}") || is("]") ? -1 : 0;
-    }
+    int nesting() const { return is("(") || is("{") || is("[") ? 1 : is(")") || is("}") || is("]") ? -1 : 0; }
 };
 
 /// All tokens of a text, which need not compile; without white space. They refer to the text.

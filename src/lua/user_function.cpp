@@ -363,7 +363,7 @@ int copied_table(lua_State* L) {
 
 }  // namespace
 
-std::shared_ptr<model::terms::Memory> LuaMemory::from_top() {
+std::shared_ptr<model::terms::FunctionMemory> LuaMemory::from_top() {
     lua_State* L = current->L_;
     const int handler = lua_gettop(L);
     lua_pushcfunction(L, guarded<witness_error>);
@@ -385,7 +385,7 @@ LuaMemory::~LuaMemory() {
     luaL_unref(main_, LUA_REGISTRYINDEX, reference_);
 }
 
-std::shared_ptr<model::terms::Memory> LuaMemory::copy() const {
+std::shared_ptr<model::terms::FunctionMemory> LuaMemory::copy() const {
     if (current == nullptr || current->failed_) return nullptr;
     push(current->L_);
     return from_top();
@@ -417,7 +417,7 @@ bool LuaFunction::push_start(lua_State* L) const {
     return true;
 }
 
-std::shared_ptr<model::terms::Memory> LuaFunction::new_memory() {
+std::shared_ptr<model::terms::FunctionMemory> LuaFunction::new_memory() {
     const bool wanted = current != nullptr && !current->failed_ && push_start(current->L_);
     return wanted ? LuaMemory::from_top() : nullptr;
 }

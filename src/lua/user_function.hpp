@@ -10,23 +10,22 @@
 #include "lua/bind.hpp"
 #include "lua/formula_reader.hpp"
 #include "model/drive.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::lua {
 
 /// While this object lives, user functions run on `L`, the state of the present call, often a coroutine. Create one in
 /// every binding that may evaluate an excitation (simulate, e:value, run:at). They nest.
-class CallState {
+class CallState : text::NotCopied {
 public:
     /// Raises an error if calls nest too deep, because each may be an integration on the C++ stack, which is smaller
     /// than Lua assumes.
     explicit CallState(lua_State* L);
     ~CallState();
-    CallState(const CallState&) = delete;
-    CallState& operator=(const CallState&) = delete;
 
     /// Returns whether a user function has failed during this call. From then on all functions return NaN, until
     /// may_go_on().
-    [[nodiscard]] bool failed() const { return failed_ || failed_before_; }
+    bool failed() const { return failed_ || failed_before_; }
     /// Makes functions receive their states in a table with these names, as fourth argument.
     void name_states(const std::vector<std::string>& names);
     /// Makes functions receive theta and velocity as tables with these names, filled from the first states.
@@ -47,18 +46,18 @@ private:
     friend class LuaMemory;
     void keep_error_on_top();
     /// Returns whether angles and velocities of several bodies precede the states.
-    [[nodiscard]] bool has_bodies(std::span<const double> states) const {
+    bool has_bodies(std::span<const double> states) const {
         return !bodies_.empty() && states.size() == 2 * bodies_.size() + names_.size();
     }
     /// Pushes theta, velocity and, if any, the states; returns how many values.
     int push_motion(const model::State& state, std::span<const double> states) const;
     void push_states(std::span<const double> states) const;
     /// Reads the states back after a user's action; returns false if one is invalid.
-    [[nodiscard]] bool read_states(std::span<double> states) const;
-    [[nodiscard]] bool read_motion(std::span<double> states) const;
+    bool read_states(std::span<double> states) const;
+    bool read_motion(std::span<double> states) const;
     void push_table(int table, std::span<const int> names, std::span<const double> values) const;
-    [[nodiscard]] bool read_table(int table, std::span<const int> names, std::span<double> values) const;
-    [[nodiscard]] std::vector<int> kept_names(const std::vector<std::string>& names) const;
+    bool read_table(int table, std::span<const int> names, std::span<double> values) const;
+    std::vector<int> kept_names(const std::vector<std::string>& names) const;
 
     lua_State* L_;
     CallState* outer_;
@@ -89,13 +88,13 @@ struct FunctionRole {
 };
 
 /// The table that a sampled controller modifies in one run.
-class LuaMemory final : public model::terms::Memory {
+class LuaMemory final : public model::terms::FunctionMemory {
 public:
     LuaMemory(lua_State* main, int reference) : main_(main), reference_(reference) {}
     ~LuaMemory() override;
     /// A copy of the table on the top, or of the table that the function on the top returns; pops it. Null on failure.
-    static std::shared_ptr<model::terms::Memory> from_top();
-    [[nodiscard]] std::shared_ptr<model::terms::Memory> copy() const override;
+    static std::shared_ptr<model::terms::FunctionMemory> from_top();
+    std::shared_ptr<model::terms::FunctionMemory> copy() const override;
     void push(lua_State* L) const { lua_rawgeti(L, LUA_REGISTRYINDEX, reference_); }
 
 private:
@@ -123,8 +122,8 @@ public:
                     std::span<const double> states, std::vector<double>* margins) override;
     bool may_go_on() override;
     void forget_failure() override;
-    std::shared_ptr<model::terms::Memory> new_memory() override;
-    void use(const std::shared_ptr<model::terms::Memory>& memory) override { memory_ = memory; }
+    std::shared_ptr<model::terms::FunctionMemory> new_memory() override;
+    void use(const std::shared_ptr<model::terms::FunctionMemory>& memory) override { memory_ = memory; }
 
     /// Makes each run begin with the table that the function at `index` returns, as fifth argument.
     void remember_from(lua_State* L, int index);
@@ -133,14 +132,14 @@ public:
 
     /// Returns whether it receives theta and velocity: a Lua function (or __call) of two or more parameters, or with
     /// `...`.
-    [[nodiscard]] bool feedback() const { return feedback_; }
-    [[nodiscard]] const FunctionRole& role() const { return role_; }
+    bool feedback() const { return feedback_; }
+    const FunctionRole& role() const { return role_; }
     /// Reads the function as a formula, unless done in this call. Returns why that fails; empty if it succeeds.
     std::string obstacle();
     /// The result of the last obstacle().
-    [[nodiscard]] const std::string& last_obstacle() const { return reading_->obstacle; }
+    const std::string& last_obstacle() const { return reading_->obstacle; }
     /// The formula if it has been read, otherwise null.
-    [[nodiscard]] model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
+    model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }
     /// Pushes the function itself.
     void push(lua_State* L) const;
 
@@ -152,22 +151,22 @@ private:
     static constexpr std::size_t many = std::size_t{1} << 20U;
     void look_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
-    [[nodiscard]] Arguments arguments_in(const CallState& call) const;
+    Arguments arguments_in(const CallState& call) const;
     /// Returns whether the formula expects these states.
-    [[nodiscard]] bool fits(std::span<const double> states) const;
+    bool fits(std::span<const double> states) const;
     /// Returns whether the function is a friction law: smooth between its conditions, and never called with negative
     /// speeds in Lua.
-    [[nodiscard]] bool is_law() const { return !role_.may_be_negative; }
+    bool is_law() const { return !role_.may_be_negative; }
     double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
     std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
-    [[nodiscard]] bool is_allowed(double result) const;
+    bool is_allowed(double result) const;
     double fail(CallState& call, int status, double t) const;
     bool is_good(lua_State* L, double& result) const;
 
     lua_State* main_;  // for the destructor, which the garbage collector calls at any time
     int reference_;
     int start_ = LUA_NOREF;  // function that returns a new memory
-    std::shared_ptr<model::terms::Memory> memory_ = {};
+    std::shared_ptr<model::terms::FunctionMemory> memory_ = {};
     FunctionRole role_;
     bool feedback_;
 

@@ -80,7 +80,7 @@ std::vector<double> numbers_that_are(lua_State* L, int index, std::string_view c
         refuse(L, index, call, option,
                fmt::format(" must be a table of numbers or a vector, got {}", describe(L, index)));
     }
-    const auto bad = std::find_if_not(numbers.begin(), numbers.end(), allowed);
+    const auto bad = std::ranges::find_if_not(numbers, allowed);
     if (bad != numbers.end()) {
         const std::string number = std::isnan(*bad) ? "nan" : fmt::format("{}", *bad);  // without its sign
         refuse(L, index, call, option, fmt::format("[{}] = {} must be finite", bad - numbers.begin() + 1, number));

@@ -25,10 +25,10 @@ public:
     Vector(std::shared_ptr<const void> owner, const double* data, std::size_t size)
         : owner_(std::move(owner)), values_(data, size) {}
 
-    [[nodiscard]] std::span<const double> values() const { return values_; }
-    [[nodiscard]] std::size_t size() const { return values_.size(); }
-    [[nodiscard]] const double* begin() const { return values_.data(); }
-    [[nodiscard]] const double* end() const { return values_.data() + values_.size(); }
+    std::span<const double> values() const { return values_; }
+    std::size_t size() const { return values_.size(); }
+    const double* begin() const { return values_.data(); }
+    const double* end() const { return values_.data() + values_.size(); }
 
 private:
     std::shared_ptr<const void> owner_;

@@ -17,9 +17,9 @@ namespace dinal::model::bounds {
 struct Interval {
     double lo = 0, hi = 0;
 
-    [[nodiscard]] bool is_one() const { return std::bit_cast<std::uint64_t>(lo) == std::bit_cast<std::uint64_t>(hi); }
+    bool is_one() const { return std::bit_cast<std::uint64_t>(lo) == std::bit_cast<std::uint64_t>(hi); }
     /// Returns whether nothing is known; the result may also be NaN.
-    [[nodiscard]] bool is_anything() const { return lo == -never && hi == never; }
+    bool is_anything() const { return lo == -never && hi == never; }
 };
 inline constexpr Interval anything{-never, never};
 
@@ -72,7 +72,7 @@ public:
     /// difference, or the folded argument in periods.
     Result run(std::optional<std::size_t> condition = {});
     /// The greatest ratio of radius to centre among the operands that determine held decisions.
-    [[nodiscard]] double greatest_relative_radius() const { return greatest_relative_radius_; }
+    double greatest_relative_radius() const { return greatest_relative_radius_; }
 
 private:
     struct Slot {
@@ -82,8 +82,8 @@ private:
         bool constant = true;  ///< whether only the bits of the centre count, which may be a whole number
     };
     [[nodiscard]] static Slot number(double bits) { return {{bits, 0}, {bits, bits}}; }
-    [[nodiscard]] Slot combined(Op op, const Slot& a, const Slot& b) const;
-    [[nodiscard]] Slot on_piece(Op op, const Slot& a, const Slot& b, double decision) const;
+    Slot combined(Op op, const Slot& a, const Slot& b) const;
+    Slot on_piece(Op op, const Slot& a, const Slot& b, double decision) const;
 
     const Formula* formula_ = nullptr;
     const double* held_ = nullptr;

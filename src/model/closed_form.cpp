@@ -32,7 +32,7 @@ void ClosedForm::add_powers(double at, std::span<const double> coefficients) {
         many.assign(n, 0.0);
         c = many.data();
     }
-    std::copy(coefficients.begin(), coefficients.end(), c);
+    std::ranges::copy(coefficients, c);
     for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t j = n - 1; j > i; --j) c[j - 1] += shift * c[j];
         powers_[i] += gain_ * c[i];
@@ -93,7 +93,7 @@ double ClosedForm::bend() const {
 
 bool has_closed_form(const Excitation& excitation) {
     const auto components = excitation.components();
-    return std::all_of(components.begin(), components.end(), [](const Component& c) {
+    return std::ranges::all_of(components, [](const Component& c) {
         return std::visit([](const auto& term) { return WithClosedForm<std::decay_t<decltype(term)>>; }, c.term);
     });
 }

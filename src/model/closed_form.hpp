@@ -43,32 +43,32 @@ public:
     void add_exponential(double amplitude, double rate, double at);
 
     // The sum.
-    [[nodiscard]] std::span<const double> powers() const { return powers_; }
+    std::span<const double> powers() const { return powers_; }
     struct Sine {
         double omega;
         double in_phase, quadrature;  ///< factors of sin(omega tau) and cos(omega tau)
     };
-    [[nodiscard]] std::span<const Sine> sines() const { return sines_; }
+    std::span<const Sine> sines() const { return sines_; }
     struct Exponential {
         double rate, amount;
     };
-    [[nodiscard]] std::span<const Exponential> exponentials() const { return exponentials_; }
+    std::span<const Exponential> exponentials() const { return exponentials_; }
     /// The number of sines and exponentials.
-    [[nodiscard]] std::size_t turning_parts() const { return sines_.size() + exponentials_.size(); }
+    std::size_t turning_parts() const { return sines_.size() + exponentials_.size(); }
 
     /// M at the origin.
-    [[nodiscard]] double value() const;
-    [[nodiscard]] double value(double tau) const;
+    double value() const;
+    double value(double tau) const;
     /// The first and the second derivative at the origin.
-    [[nodiscard]] double slope() const;
-    [[nodiscard]] double bend() const;
+    double slope() const;
+    double bend() const;
     /// The greatest frequency or rate (per time unit), 0 for a polynomial.
-    [[nodiscard]] double fastest() const { return fastest_; }
+    double fastest() const { return fastest_; }
     /// The time in which the fastest growing part grows by e; `never` if none grows.
-    [[nodiscard]] double grows_in() const { return growth_ > 0 ? 1 / growth_ : never; }
+    double grows_in() const { return growth_ > 0 ? 1 / growth_ : never; }
 
 private:
-    [[nodiscard]] double since(double at) const { return (time_ - at) + rest_; }
+    double since(double at) const { return (time_ - at) + rest_; }
     void reach(std::size_t power) {
         if (powers_.size() <= power) powers_.resize(power + 1, 0.0);
     }

@@ -75,8 +75,7 @@ const C* controller_of(const Component& component) {
 template <class C = Controller>
 bool has_memory(const Excitation& excitation) {
     const auto& components = excitation.components();
-    return std::any_of(components.begin(), components.end(),
-                       [](const Component& c) { return controller_of<C>(c) != nullptr; });
+    return std::ranges::any_of(components, [](const Component& c) { return controller_of<C>(c) != nullptr; });
 }
 
 }  // namespace dinal::model

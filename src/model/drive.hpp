@@ -11,6 +11,7 @@
 
 #include "model/controller.hpp"
 #include "model/excitation.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -22,23 +23,20 @@ struct OwnState {
 };
 
 /// A user's action at one of his events.
-class EventAction {
+class EventAction : text::NotCopied {
 public:
-    EventAction() = default;
-    EventAction(const EventAction&) = delete;
-    EventAction& operator=(const EventAction&) = delete;
     virtual ~EventAction() = default;
     /// Changes the motion and the states; returns false if it failed (the owner knows why).
     virtual bool act(double t, State& state, std::span<double> states) = 0;
 };
 
-enum class Crossing { up, down, both };
+enum class Direction { up, down, both };
 
 /// An event located where `when` passes zero.
 struct WantedEvent {
     std::string name;
     std::shared_ptr<terms::UserFunction> when;
-    Crossing direction = Crossing::both;
+    Direction direction = Direction::both;
     bool stop = false;
     std::shared_ptr<EventAction> act = {};
 };
@@ -66,22 +64,21 @@ struct Drive {
     std::vector<double> theta0, velocity0;  ///< one for each body
 
     // For a single body, or the first one.
-    [[nodiscard]] const Excitation& M() const { return loads.front(); }
+    const Excitation& M() const { return loads.front(); }
     /// The sum of all loads.
-    [[nodiscard]] Excitation sum_of_loads() const {
+    Excitation sum_of_loads() const {
         Excitation sum;
         for (const Excitation& load : loads) sum = sum + load;
         return sum;
     }
-    [[nodiscard]] const Excitation& belt() const { return belts.front(); }
-    [[nodiscard]] State start() const { return {theta0.front(), velocity0.front()}; }
+    const Excitation& belt() const { return belts.front(); }
+    State start() const { return {theta0.front(), velocity0.front()}; }
     void start_at(const State& state) { theta0.front() = state.theta, velocity0.front() = state.velocity; }
 
     /// Returns whether anything except loads acts or is requested.
-    [[nodiscard]] bool has_more() const {
+    bool has_more() const {
         return !states.empty() || !events.empty() || !base.components().empty() ||
-               std::any_of(belts.begin(), belts.end(),
-                           [](const Excitation& belt) { return !belt.components().empty(); });
+               std::ranges::any_of(belts, [](const Excitation& belt) { return !belt.components().empty(); });
     }
 };
 

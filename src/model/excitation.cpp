@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace dinal::model {
 namespace {
@@ -142,7 +143,7 @@ double Excitation::view(double t, double spacing) const {
 }
 
 terms::Detail Excitation::finest_detail(double from, double to) const {
-    terms::Detail finest = terms::no_detail;
+    terms::Detail finest;
     for (const Component& c : components()) {
         const terms::Detail found = detail_of(c);
         if (found.apart < finest.apart && found.from < found.to && found.from < to && found.to > from) {
@@ -203,7 +204,7 @@ Excitation Excitation::scaled(double gain) const {
 
 Excitation Excitation::delayed(double delay) const {
     return changed([delay](Component& c) {
-        std::visit([delay](auto& term) { term.delay_by(delay); }, c.term);
+        std::visit([delay](auto& term) { terms::delay(term, delay); }, c.term);
         c.from += delay;
         c.to += delay;
     });
@@ -228,6 +229,133 @@ Excitation Excitation::with_functions(const FunctionChange& other) const {
 
 Excitation operator+(const Excitation& a, const Excitation& b) {
     return Excitation(Components::joined(a.components_, b.components_));
+}
+
+namespace {
+
+/// Returns whether `common` is an integer multiple of all periods.
+bool fit(const std::vector<double>& periods, double common) {
+    return std::all_of(periods.begin(), periods.end(), [common](double period) {
+        const double n = common / period;
+        return std::fabs(n - std::round(n)) <= 1e-9 * n;
+    });
+}
+
+}  // namespace
+
+double period_from(const Excitation& excitation, double t) {
+    std::vector<double> periods;
+    for (const Component& c : excitation.components()) {
+        if (constant_from(c) <= t) continue;
+        const double period = std::visit([](const auto& term) { return terms::period_of(term); }, c.term);
+        if (!(period > 0) || c.from > t || c.to < never) return 0;
+        periods.push_back(period);
+    }
+    if (periods.empty()) return 0;
+    constexpr int most_beats = 60;  // periods of the slowest term; a longer common period is of no use
+    const double longest = *std::max_element(periods.begin(), periods.end());
+    for (int n = 1; n <= most_beats; ++n) {
+        if (fit(periods, n * longest)) return n * longest;
+    }
+    return 0;
+}
+
+namespace {
+
+/// The time from which a term is constant, and whether it is 0 then.
+struct Settled {
+    double time;
+    bool at_zero;
+};
+Settled settled(const Component& c) {
+    return std::visit(
+        [](const auto& term) -> Settled {
+            if (term.most() == 0) return {-never, true};
+            const double time = term.constant_from();
+            if constexpr (terms::NativeTerm<std::decay_t<decltype(term)>>) {
+                return {time, time < never && term.value(time) == 0};
+            }
+            return {time, false};
+        },
+        c.term);
+}
+
+}  // namespace
+
+double next_break(const Component& c, double t) {
+    if (c.gain == 0 || t >= c.to) {
+        return never;
+    }
+    if (t < c.from) {
+        return c.from;
+    }
+    return std::min(c.to, std::visit([t](const auto& term) { return term.next_break(t); }, c.term));
+}
+
+double constant_from(const Component& c) {
+    if (c.gain == 0) {
+        return -never;
+    }
+    const auto [time, at_zero] = settled(c);
+    if (c.to < never) {
+        return at_zero ? std::min(c.to, time) : c.to;
+    }
+    return at_zero ? time : std::max(c.from, time);
+}
+
+terms::Detail detail_of(const Component& c) {
+    if (c.gain == 0) {
+        return {};
+    }
+    const terms::Detail whole = std::visit([](const auto& term) { return terms::detail_of(term); }, c.term);
+    return {std::max(c.from, whole.from), std::min(c.to, whole.to), whole.apart};
+}
+
+Components::Components(std::shared_ptr<Places> places, std::size_t first, std::size_t count)
+    : places_(std::move(places)), stretch_(places_->all.data() + first, count) {}
+
+Components::Components(std::vector<Component> all) {
+    const std::size_t count = all.size();
+    places_ = std::make_shared<Places>(std::move(all), 0, count);
+    stretch_ = places_->all;
+}
+
+std::size_t Components::first_place() const {
+    return static_cast<std::size_t>(stretch_.data() - places_->all.data());
+}
+
+bool Components::claim_after(std::size_t count) const {
+    std::size_t last = first_place() + stretch_.size();
+    return places_->all.size() - last >= count && places_->last.compare_exchange_strong(last, last + count);
+}
+
+bool Components::claim_before(std::size_t count) const {
+    std::size_t begin = first_place();
+    return begin >= count && places_->first.compare_exchange_strong(begin, begin - count);
+}
+
+Components Components::joined(const Components& a, const Components& b) {
+    const std::size_t n = a.stretch_.size(), m = b.stretch_.size();
+    if (n == 0 || m == 0) {
+        return n == 0 ? b : a;
+    }
+    if (m <= n && a.claim_after(m)) {
+        std::copy(b.stretch_.begin(), b.stretch_.end(),
+                  a.places_->all.begin() + static_cast<std::ptrdiff_t>(a.first_place() + n));
+        return {a.places_, a.first_place(), n + m};
+    }
+    if (n <= m && b.claim_before(n)) {
+        const std::size_t first = b.first_place() - n;
+        std::copy(a.stretch_.begin(), a.stretch_.end(), b.places_->all.begin() + static_cast<std::ptrdiff_t>(first));
+        return {b.places_, first, n + m};
+    }
+    // Twice as many places, with free ones on both sides: a sum may grow at either end.
+    const std::size_t first = (n + m) / 2;
+    const auto places = std::make_shared<Places>(std::vector<Component>(2 * (n + m)), first, first + n + m);
+    const auto middle =
+        std::copy(a.stretch_.begin(), a.stretch_.end(), places->all.begin() + static_cast<std::ptrdiff_t>(first));
+    std::copy(b.stretch_.begin(), b.stretch_.end(), middle);
+    return {places, first, n + m};
 }
 
 }  // namespace dinal::model

@@ -41,13 +41,13 @@ bool evenly_spaced(std::span<const double> times, double spacing) {
 
 /// The addition theorem for a sine, limited to its peak as sin() is: a load of amplitude Re exceeded by rounding would
 /// end a stick.
-struct Sum {
+struct SineOfSum {
     double sine, cosine, peak;
-    Sum(double amplitude, const terms::Angle& angle) : peak(std::fabs(amplitude)) {
+    SineOfSum(double amplitude, const terms::Angle& angle) : peak(std::fabs(amplitude)) {
         const double s = std::sin(angle.rounded), c = std::cos(angle.rounded);
         sine = amplitude * (s + angle.lack * c), cosine = amplitude * (c - angle.lack * s);
     }
-    [[nodiscard]] double at(double sine_of, double cosine_of) const {
+    double at(double sine_of, double cosine_of) const {
         return std::clamp(sine * cosine_of + cosine * sine_of, -peak, peak);
     }
 };
@@ -57,7 +57,7 @@ struct Sum {
 std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                       Spread& spread) {
     const Spread::Turn& turn = spread.turn(h.omega);
-    const Sum sum(c.gain * h.amplitude, terms::angle_at(spread.middle, spread.rest, h.omega, h.at, h.phase));
+    const SineOfSum sum(c.gain * h.amplitude, terms::angle_at(spread.middle, spread.rest, h.omega, h.at, h.phase));
     const std::size_t last = spread.places.size() - 1, n = times.size();
     std::size_t i = 0, end = n;
     if (spread.first == 0) out[0] += c.gain * h.value(times[0]), i = 1;
@@ -85,7 +85,7 @@ std::size_t add(const Harmonic& h, const Component& c, std::span<const double> t
         cosine[j] = std::cos(h.omega * (static_cast<double>(j) * spacing));
     }
     for (std::size_t i = 0; i < n; i += stride) {
-        const Sum sum(c.gain * h.amplitude, {h.angle(times[i]), 0});
+        const SineOfSum sum(c.gain * h.amplitude, {h.angle(times[i]), 0});
         const std::size_t count = std::min(stride, n - i);
         for (std::size_t j = 0; j < count; ++j) {
             out[i + j] += sum.at(sine[j], cosine[j]);

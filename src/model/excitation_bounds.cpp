@@ -33,9 +33,9 @@ public:
 
     void set_gain(double gain) { gain_ = exactly<Number>(gain); }
     void add(const Number& x) { sum_ = of(Op::add, sum_, of(Op::multiply, gain_, x)); }
-    [[nodiscard]] const Number& sum() const { return sum_; }
+    const Number& sum() const { return sum_; }
     /// The greatest magnitude of an intermediate result, for the rounding error.
-    [[nodiscard]] double greatest() const { return greatest_; }
+    double greatest() const { return greatest_; }
 
     // Called by the terms' closed_form().
     void add_constant(double level) { add(exactly<Number>(level)); }

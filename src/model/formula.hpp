@@ -10,7 +10,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "model/excitation.hpp"
@@ -143,27 +142,27 @@ public:
 
     /// The formula as a sum of native terms of the time since `from`, to rounding. It is valid while the conditions
     /// hold that hold at the time `inside`. Empty if the formula is no such sum.
-    [[nodiscard]] std::optional<Excitation> terms(double from, double inside) const;
+    std::optional<Excitation> terms(double from, double inside) const;
     /// The proven period in t; 0 if none is known or the formula is constant.
-    [[nodiscard]] double period() const;
+    double period() const;
 
     // The program, for evaluation with other kinds of numbers.
-    [[nodiscard]] const std::vector<Step>& steps() const { return steps_; }
-    [[nodiscard]] const std::vector<double>& registers() const { return registers_; }
-    [[nodiscard]] bool takes_motion() const { return motion_; }
-    [[nodiscard]] std::size_t first_state() const { return states_; }
-    [[nodiscard]] std::size_t state_count() const { return state_count_; }
+    const std::vector<Step>& steps() const { return steps_; }
+    const std::vector<double>& registers() const { return registers_; }
+    bool takes_motion() const { return motion_; }
+    std::size_t first_state() const { return states_; }
+    std::size_t state_count() const { return state_count_; }
 
     /// Returns whether the formula compares, rounds or folds at all.
-    [[nodiscard]] bool has_conditions() const { return has_conditions_; }
+    bool has_conditions() const { return has_conditions_; }
     /// Returns whether a condition depends on theta, velocity or a state.
-    [[nodiscard]] bool has_conditions_of_motion() const { return of_motion_; }
+    bool has_conditions_of_motion() const { return of_motion_; }
     /// Returns whether an excitation is evaluated at a time that depends on theta, velocity or a state.
-    [[nodiscard]] bool moves_excitations() const {
+    bool moves_excitations() const {
         return !excitations_.empty() && depends_on_motion([](Op op) { return op == Op::native; });
     }
     /// Returns whether the search for break times exceeded its limit; next_break() then returns `never`.
-    [[nodiscard]] bool gave_up() const { return gave_up_; }
+    bool gave_up() const { return gave_up_; }
 
 private:
     struct Range;
@@ -171,11 +170,11 @@ private:
     enum class Breaks { own, all };
     double next_break(double t, Breaks which);
     double search(double t, Breaks which);
-    [[nodiscard]] std::vector<std::uint64_t> sources() const;
-    [[nodiscard]] bool depends_on_motion(bool (*wanted)(Op op)) const;
+    std::vector<std::uint64_t> sources() const;
+    bool depends_on_motion(bool (*wanted)(Op op)) const;
     void start(double t, const State& state, std::span<const double> states);
     bool is_dubious(double t, double found);
-    [[nodiscard]] bool is_of_excitation(double found) const;
+    bool is_of_excitation(double found) const;
 
     std::vector<Step> steps_;
     std::vector<double> registers_;

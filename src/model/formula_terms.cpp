@@ -21,12 +21,10 @@ struct TermSum {
     std::vector<Grown> exponentials{};
     Excitation others{};  ///< terms given as functions of t itself
 
-    [[nodiscard]] bool is_polynomial() const {
-        return sines.empty() && exponentials.empty() && others.components().empty();
-    }
-    [[nodiscard]] bool is_line() const { return is_polynomial() && powers.size() <= 2; }
-    [[nodiscard]] bool is_constant() const { return is_polynomial() && powers.size() <= 1; }
-    [[nodiscard]] double power(std::size_t n) const { return n < powers.size() ? powers[n] : 0; }
+    bool is_polynomial() const { return sines.empty() && exponentials.empty() && others.components().empty(); }
+    bool is_line() const { return is_polynomial() && powers.size() <= 2; }
+    bool is_constant() const { return is_polynomial() && powers.size() <= 1; }
+    double power(std::size_t n) const { return n < powers.size() ? powers[n] : 0; }
 
     void add(const TermSum& other, double gain) {
         powers.resize(std::max(powers.size(), other.powers.size()));

@@ -15,6 +15,7 @@
 #include <typeinfo>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -50,15 +51,15 @@ struct SpeedRange {
     bool straight = false;
     double torque = 0, slope = 0;
 
-    [[nodiscard]] double at(double speed) const { return torque + slope * (speed - from); }
+    double at(double speed) const { return torque + slope * (speed - from); }
 };
 
 /// A law with an internal state z, such as the deflection of bristles, derives from this. It never sticks or slips
 /// exactly: sliding() is its torque in steady sliding, holding() the greatest torque. z begins at 0.
 struct BendingLaw {
     /// z' at slip velocity v; it may have a corner at v = 0.
-    [[nodiscard]] virtual double bend_rate(double v, double z) const = 0;
-    [[nodiscard]] virtual double torque(double v, double z) const = 0;
+    virtual double bend_rate(double v, double z) const = 0;
+    virtual double torque(double v, double z) const = 0;
 
 protected:
     BendingLaw() = default;
@@ -88,31 +89,29 @@ public:
         : law_(std::make_shared<const Held<Law>>(law)) {}
 
     /// The same law with its torques multiplied by a constant normal load; a negative load counts as 0.
-    [[nodiscard]] Friction under(double normal) const {
+    Friction under(double normal) const {
         Friction loaded = *this;
         loaded.normal_ = std::max(0.0, normal);
         return loaded;
     }
-    [[nodiscard]] double normal() const { return normal_; }
+    double normal() const { return normal_; }
 
-    [[nodiscard]] double sliding(Motion way, double speed) const {
-        return law_ ? normal_ * law_->sliding(way, speed) : 0;
-    }
-    [[nodiscard]] double holding(Motion way) const { return law_ && normal_ > 0 ? normal_ * law_->holding(way) : 0; }
+    double sliding(Motion way, double speed) const { return law_ ? normal_ * law_->sliding(way, speed) : 0; }
+    double holding(Motion way) const { return law_ && normal_ > 0 ? normal_ * law_->holding(way) : 0; }
     /// Returns whether the law never lets the contact slip backward.
-    [[nodiscard]] bool is_one_way() const { return std::isinf(holding(Motion::backward)); }
-    [[nodiscard]] bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
+    bool is_one_way() const { return std::isinf(holding(Motion::backward)); }
+    bool depends_on_speed() const { return law_ && normal_ > 0 && law_->depends_on_speed(); }
     /// Rd; the greater one if they depend on the direction; the torque at speed 0 for a law without Rd.
-    [[nodiscard]] double kinetic() const;
+    double kinetic() const;
     /// The number of smooth ranges; 0 if the law does not declare them.
-    [[nodiscard]] std::size_t ranges() const { return law_ ? law_->ranges() : 0; }
-    [[nodiscard]] SpeedRange range(std::size_t i) const {
+    std::size_t ranges() const { return law_ ? law_->ranges() : 0; }
+    SpeedRange range(std::size_t i) const {
         SpeedRange range = law_->range(i);
         range.torque *= normal_, range.slope *= normal_;
         return range;
     }
     /// The range that contains this speed; at a corner, the upper one.
-    [[nodiscard]] std::size_t range_of(double speed) const {
+    std::size_t range_of(double speed) const {
         std::size_t low = 0, high = ranges();
         while (high - low > 1) {
             const std::size_t middle = low + (high - low) / 2;
@@ -120,91 +119,84 @@ public:
         }
         return low;
     }
-    [[nodiscard]] double slope(double speed) const { return normal_ * law_->slope(speed); }
-    [[nodiscard]] double scale(double speed) const { return law_->scale(speed); }
+    double slope(double speed) const { return normal_ * law_->slope(speed); }
+    double scale(double speed) const { return law_->scale(speed); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
     /// The Lua expression that makes the law again, without its normal load; empty if there is none.
-    [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
+    std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
     /// Returns whether nothing brakes or holds, so that velocity zero is not special.
-    [[nodiscard]] bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
+    bool none() const { return !depends_on_speed() && greatest_holding() == 0; }
     /// The greater sliding torque of both directions, at speed 0.
-    [[nodiscard]] double greatest_sliding() const {
-        return std::max(sliding(Motion::forward, 0), sliding(Motion::backward, 0));
-    }
-    [[nodiscard]] double greatest_holding() const {
-        return std::max(holding(Motion::forward), holding(Motion::backward));
-    }
+    double greatest_sliding() const { return std::max(sliding(Motion::forward, 0), sliding(Motion::backward, 0)); }
+    double greatest_holding() const { return std::max(holding(Motion::forward), holding(Motion::backward)); }
     /// The law without its normal load if it has an internal state, otherwise nullptr.
-    [[nodiscard]] const BendingLaw* bending() const { return law_ ? law_->bending() : nullptr; }
+    const BendingLaw* bending() const { return law_ ? law_->bending() : nullptr; }
     /// The law without its normal load if it is a `Law`, otherwise nullptr.
     template <FrictionLaw Law>
-    [[nodiscard]] const Law* as() const {
+    const Law* as() const {
         const Any* law = law_.get();
         return law != nullptr && typeid(*law) == typeid(Held<Law>) ? &static_cast<const Held<Law>*>(law)->law : nullptr;
     }
 
 private:
-    struct Any {
-        Any() = default;
-        Any(const Any&) = delete;
-        Any& operator=(const Any&) = delete;
+    struct Any : text::NotCopied {
         virtual ~Any() = default;
-        [[nodiscard]] virtual double sliding(Motion way, double speed) const = 0;
-        [[nodiscard]] virtual double holding(Motion way) const = 0;
-        [[nodiscard]] virtual bool depends_on_speed() const = 0;
+        virtual double sliding(Motion way, double speed) const = 0;
+        virtual double holding(Motion way) const = 0;
+        virtual bool depends_on_speed() const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
-        [[nodiscard]] virtual const BendingLaw* bending() const = 0;
-        [[nodiscard]] virtual std::string lua_text() const = 0;
-        [[nodiscard]] virtual std::size_t ranges() const = 0;
-        [[nodiscard]] virtual SpeedRange range(std::size_t i) const = 0;
-        [[nodiscard]] virtual double slope(double speed) const = 0;
-        [[nodiscard]] virtual double scale(double speed) const = 0;
+        virtual const BendingLaw* bending() const = 0;
+        virtual std::string lua_text() const = 0;
+        virtual std::size_t ranges() const = 0;
+        virtual SpeedRange range(std::size_t i) const = 0;
+        virtual double slope(double speed) const = 0;
+        virtual double scale(double speed) const = 0;
     };
     template <class Law>
     struct Held final : Any {
         explicit Held(const Law& given) : law(given) {}
-        [[nodiscard]] double sliding(Motion way, double speed) const override { return law.sliding(way, speed); }
-        [[nodiscard]] double holding(Motion way) const override { return law.holding(way); }
-        [[nodiscard]] bool depends_on_speed() const override { return Law::depends_on_speed; }
+        double sliding(Motion way, double speed) const override { return law.sliding(way, speed); }
+        double holding(Motion way) const override { return law.holding(way); }
+        bool depends_on_speed() const override { return Law::depends_on_speed; }
         [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
-        [[nodiscard]] const BendingLaw* bending() const override {
+        const BendingLaw* bending() const override {
             if constexpr (std::derived_from<Law, BendingLaw>) {
                 return &law;
             } else {
                 return nullptr;
             }
         }
-        [[nodiscard]] std::string lua_text() const override {
+        std::string lua_text() const override {
             if constexpr (requires { law.lua_text(); }) {
                 return law.lua_text();
             } else {
                 return "";
             }
         }
-        [[nodiscard]] std::size_t ranges() const override {
+        std::size_t ranges() const override {
             if constexpr (requires { law.ranges(); }) {
                 return law.ranges();
             } else {
                 return 0;
             }
         }
-        [[nodiscard]] SpeedRange range(std::size_t i) const override {
+        SpeedRange range(std::size_t i) const override {
             if constexpr (requires { law.range(i); }) {
                 return law.range(i);
             } else {
                 return {};
             }
         }
-        [[nodiscard]] double slope(double speed) const override {
+        double slope(double speed) const override {
             if constexpr (requires { law.slope(speed); }) {
                 return law.slope(speed);
             } else {
                 return 0;
             }
         }
-        [[nodiscard]] double scale(double speed) const override {
+        double scale(double speed) const override {
             if constexpr (requires { law.scale(speed); }) {
                 return law.scale(speed);
             } else {

@@ -28,37 +28,35 @@ public:
         if (!system.spring().none()) spring_ = &system.spring();
     }
 
-    [[nodiscard]] double inertia() const { return inertia_; }
-    [[nodiscard]] double damping() const { return damping_; }
-    [[nodiscard]] double stiffness() const { return stiffness_; }
+    double inertia() const { return inertia_; }
+    double damping() const { return damping_; }
+    double stiffness() const { return stiffness_; }
     /// The constant friction torque while moving this way, with the sign of the motion; 0 while stuck.
-    [[nodiscard]] double braking(Motion way) const { return braking_[index(way)]; }
+    double braking(Motion way) const { return braking_[index(way)]; }
     /// The largest pull this way that sticking can hold.
-    [[nodiscard]] double holding(Motion way) const { return holding_[index(way)]; }
-    [[nodiscard]] double greatest_holding() const {
-        return std::max(holding(Motion::forward), holding(Motion::backward));
-    }
+    double holding(Motion way) const { return holding_[index(way)]; }
+    double greatest_holding() const { return std::max(holding(Motion::forward), holding(Motion::backward)); }
     /// Returns whether friction must be evaluated at velocity zero; otherwise the mass swings through.
-    [[nodiscard]] bool dry() const { return dry_; }
+    bool dry() const { return dry_; }
 
-    [[nodiscard]] bool has_remainder() const { return friction_ != nullptr || spring_ != nullptr; }
+    bool has_remainder() const { return friction_ != nullptr || spring_ != nullptr; }
     /// The torque beyond the linear part and the constant. Only while moving.
-    [[nodiscard]] double remainder(Motion way, const State& state) const {
+    double remainder(Motion way, const State& state) const {
         return friction_remainder(way, state) + spring(state.theta);
     }
-    [[nodiscard]] bool has_spring() const { return spring_ != nullptr; }
+    bool has_spring() const { return spring_ != nullptr; }
     /// The friction part of the remainder; 0 at velocity zero.
-    [[nodiscard]] double friction_remainder(Motion way, const State& state) const {
+    double friction_remainder(Motion way, const State& state) const {
         if (friction_ == nullptr) return 0;
         const double sign = sign_of(way);
         return sign * friction_->sliding(way, sign * state.velocity) - braking(way);
     }
     /// The nonlinear spring torque, positive against theta.
-    [[nodiscard]] double spring(double theta) const { return spring_ == nullptr ? 0 : spring_->torque(theta); }
+    double spring(double theta) const { return spring_ == nullptr ? 0 : spring_->torque(theta); }
     /// The energy stored in the nonlinear spring, torque times rad.
-    [[nodiscard]] double spring_energy(double theta) const { return spring_ == nullptr ? 0 : spring_->energy(theta); }
+    double spring_energy(double theta) const { return spring_ == nullptr ? 0 : spring_->energy(theta); }
     /// The torque of all springs, k theta included.
-    [[nodiscard]] double pull_back(double theta) const {
+    double pull_back(double theta) const {
         return spring_ == nullptr ? stiffness_ * theta : stiffness_ * theta + spring_->torque(theta);
     }
 

@@ -83,52 +83,52 @@ public:
     /// Fails with a sentence that names the parameter, its value and its range.
     static text::Expected<Oscillator> make(const OscillatorParameters& parameters);
 
-    [[nodiscard]] double inertia() const { return inertia_; }
-    [[nodiscard]] double stiffness() const { return stiffness_; }
-    [[nodiscard]] double damping() const { return damping_; }
-    [[nodiscard]] const Friction& friction() const { return friction_; }
+    double inertia() const { return inertia_; }
+    double stiffness() const { return stiffness_; }
+    double damping() const { return damping_; }
+    const Friction& friction() const { return friction_; }
     /// The nonlinear spring in addition to k theta.
-    [[nodiscard]] const Spring& spring() const { return spring_; }
+    const Spring& spring() const { return spring_; }
     /// The end stops, if any.
-    [[nodiscard]] const std::optional<Walls>& walls() const { return walls_; }
+    const std::optional<Walls>& walls() const { return walls_; }
     /// Words for output only.
-    [[nodiscard]] const Units& units() const;
+    const Units& units() const;
     /// Returns whether k is the only spring, so that quantities derived from k are valid.
-    [[nodiscard]] bool has_linear_spring() const { return has_spring() && spring_.none(); }
+    bool has_linear_spring() const { return has_spring() && spring_.none(); }
     /// Returns, after a torque that was not finite, whether the user's functions may be evaluated again.
-    [[nodiscard]] bool may_go_on() const;
+    bool may_go_on() const;
     /// Rd under the normal load, as all friction torques here.
-    [[nodiscard]] double kinetic_friction() const { return friction_.kinetic(); }
+    double kinetic_friction() const { return friction_.kinetic(); }
     /// Re; the greater one if it depends on the direction.
-    [[nodiscard]] double breakaway() const { return friction_.greatest_holding(); }
+    double breakaway() const { return friction_.greatest_holding(); }
 
     /// Returns whether k > 0. Without k there is no natural frequency, period, damping ratio or preferred place of
     /// rest.
-    [[nodiscard]] bool has_spring() const { return stiffness_ > 0; }
+    bool has_spring() const { return stiffness_ > 0; }
     /// w0 = sqrt(k / I), rad per time unit; 0 without a spring.
-    [[nodiscard]] double natural_frequency() const;
+    double natural_frequency() const;
     /// T0 = 2 pi / w0; infinite without a spring.
-    [[nodiscard]] double natural_period() const;
+    double natural_period() const;
     /// zeta = C / (2 I w0) = C / (2 sqrt(I k)): viscous, never dry; without a spring infinite, or 0 without damping.
-    [[nodiscard]] double damping_ratio() const;
+    double damping_ratio() const;
     /// w1 = w0 sqrt(1 - zeta^2); none unless the system swings (zeta < 1).
-    [[nodiscard]] std::optional<double> damped_frequency() const;
+    std::optional<double> damped_frequency() const;
     /// Compares C^2 with 4 I k, so that an exactly critical system is recognised.
-    [[nodiscard]] Regime regime() const;
+    Regime regime() const;
     /// Re / k: without excitation the mass can stay anywhere with |theta| <= this. Infinite without a spring.
-    [[nodiscard]] double dead_zone() const { return has_spring() ? breakaway() / stiffness_ : unlimited; }
+    double dead_zone() const { return has_spring() ? breakaway() / stiffness_ : unlimited; }
     /// The lowest and the highest theta at which the mass can stay without excitation.
-    [[nodiscard]] std::pair<double, double> resting_places() const {
+    std::pair<double, double> resting_places() const {
         if (!has_spring()) return {-unlimited, unlimited};
         return {-friction_.holding(Motion::forward) / stiffness_, friction_.holding(Motion::backward) / stiffness_};
     }
     /// gamma = Rd / |Mc| for the characteristic torque Mc.
-    [[nodiscard]] double friction_ratio(double characteristic_torque) const;
+    double friction_ratio(double characteristic_torque) const;
     /// Mc of a free motion: k sqrt(theta0^2 + (velocity0 / w0)^2) (report, section 5).
-    [[nodiscard]] double characteristic_torque(const State& initial) const;
+    double characteristic_torque(const State& initial) const;
 
     /// The parameters that construct this system, the friction law included.
-    [[nodiscard]] OscillatorParameters parameters() const;
+    OscillatorParameters parameters() const;
 
 private:
     Oscillator() = default;

@@ -11,6 +11,7 @@
 #include <typeinfo>
 
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 
@@ -38,18 +39,18 @@ public:
     Spring(const Law& law)  // NOLINT(google-explicit-constructor): a law is a spring
         : law_(std::make_shared<const HeldSpring<Law>>(law)) {}
 
-    [[nodiscard]] bool none() const { return law_ == nullptr; }
-    [[nodiscard]] double torque(double theta) const { return law_ ? law_->torque(theta) : 0; }
-    [[nodiscard]] double energy(double theta) const { return law_ ? law_->energy(theta) : 0; }
+    bool none() const { return law_ == nullptr; }
+    double torque(double theta) const { return law_ ? law_->torque(theta) : 0; }
+    double energy(double theta) const { return law_ ? law_->energy(theta) : 0; }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
-    [[nodiscard]] bool is_odd() const { return !law_ || law_->is_odd(); }
-    [[nodiscard]] bool may_go_on() const { return !law_ || law_->may_go_on(); }
-    [[nodiscard]] std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
+    bool is_odd() const { return !law_ || law_->is_odd(); }
+    bool may_go_on() const { return !law_ || law_->may_go_on(); }
+    std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
     /// The law if it is a `Law`, otherwise nullptr.
     template <SpringLaw Law>
-    [[nodiscard]] const Law* as() const {
+    const Law* as() const {
         const AnySpring* law = law_.get();
         return law != nullptr && typeid(*law) == typeid(HeldSpring<Law>)
                    ? &static_cast<const HeldSpring<Law>*>(law)->law
@@ -57,27 +58,24 @@ public:
     }
 
 private:
-    struct AnySpring {
-        AnySpring() = default;
-        AnySpring(const AnySpring&) = delete;
-        AnySpring& operator=(const AnySpring&) = delete;
+    struct AnySpring : text::NotCopied {
         virtual ~AnySpring() = default;
-        [[nodiscard]] virtual double torque(double theta) const = 0;
-        [[nodiscard]] virtual double energy(double theta) const = 0;
+        virtual double torque(double theta) const = 0;
+        virtual double energy(double theta) const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
-        [[nodiscard]] virtual bool is_odd() const = 0;
-        [[nodiscard]] virtual bool may_go_on() const = 0;
-        [[nodiscard]] virtual std::string lua_text() const = 0;
+        virtual bool is_odd() const = 0;
+        virtual bool may_go_on() const = 0;
+        virtual std::string lua_text() const = 0;
     };
     template <class Law>
     struct HeldSpring final : AnySpring {
         explicit HeldSpring(const Law& given) : law(given) {}
-        [[nodiscard]] double torque(double theta) const override { return law.torque(theta); }
-        [[nodiscard]] double energy(double theta) const override { return law.energy(theta); }
+        double torque(double theta) const override { return law.torque(theta); }
+        double energy(double theta) const override { return law.energy(theta); }
         [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
-        [[nodiscard]] bool is_odd() const override { return law.is_odd(); }
-        [[nodiscard]] bool may_go_on() const override { return law.may_go_on(); }
-        [[nodiscard]] std::string lua_text() const override { return law.lua_text(); }
+        bool is_odd() const override { return law.is_odd(); }
+        bool may_go_on() const override { return law.may_go_on(); }
+        std::string lua_text() const override { return law.lua_text(); }
         Law law;
     };
     std::shared_ptr<const AnySpring> law_;  // shared by copies of a system; never changed

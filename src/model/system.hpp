@@ -21,7 +21,7 @@
 #include "model/drive.hpp"
 #include "model/excitation.hpp"
 #include "model/friction.hpp"
-#include "model/laws/jenkins.hpp"
+#include "model/laws/bristle.hpp"
 #include "model/oscillator.hpp"
 #include "model/spring.hpp"
 #include "model/units.hpp"
@@ -43,18 +43,18 @@ struct ContactFriction {
     std::optional<Excitation> normal = {};
 
     /// The law if it has an internal state, so that it never sticks or slips exactly; otherwise nullptr.
-    [[nodiscard]] const BendingLaw* bending() const { return law.bending(); }
+    const BendingLaw* bending() const { return law.bending(); }
     /// Returns whether there is only the law, without internal state.
-    [[nodiscard]] bool is_constant() const {
+    bool is_constant() const {
         return bending() == nullptr && function == nullptr && !normal && !sliding[0] && !sliding[1] && !holding[0] &&
                !holding[1];
     }
     /// Returns whether no torque can make the contact stick.
-    [[nodiscard]] bool none() const { return is_constant() && law.none(); }
+    bool none() const { return is_constant() && law.none(); }
     /// Returns whether an Oscillator can have this friction.
-    [[nodiscard]] bool is_plain() const { return is_constant() && is_of_numbers(); }
+    bool is_plain() const { return is_constant() && is_of_numbers(); }
     /// Returns whether the torques are given by Rd and Re: no freewheel, no sliders behind springs.
-    [[nodiscard]] bool is_of_numbers() const { return sliders.empty() && !law.is_one_way(); }
+    bool is_of_numbers() const { return sliders.empty() && !law.is_one_way(); }
 };
 
 /// The prescribed motion of a body: its angle or its velocity.
@@ -85,28 +85,28 @@ struct Joint {
     std::optional<Walls> stops = {};  ///< elastic walls
     bool rigid = false;               ///< whether it holds its angle with any torque needed
 
-    [[nodiscard]] std::size_t first() const { return of.front().body; }
+    std::size_t first() const { return of.front().body; }
     /// Returns the weighted sum of body values, such as angles.
     template <class Values>
-    [[nodiscard]] double sum(const Values& of_bodies) const {
+    double sum(const Values& of_bodies) const {
         double total = 0;
         for (const auto& [body, by] : of) total += by * of_bodies[body];
         return total;
     }
-    [[nodiscard]] bool is_on(std::size_t body) const {
-        return std::any_of(of.begin(), of.end(), [body](const Weight& weight) { return weight.body == body; });
+    bool is_on(std::size_t body) const {
+        return std::ranges::any_of(of, [body](const Weight& weight) { return weight.body == body; });
     }
-    [[nodiscard]] const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
+    const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
     /// Returns whether an Oscillator can represent this joint.
-    [[nodiscard]] bool is_plain() const { return friction.is_plain() && !stops; }
+    bool is_plain() const { return friction.is_plain() && !stops; }
     /// Returns whether it links two bodies without a gear.
-    [[nodiscard]] bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
+    bool is_difference() const { return of.size() == 2 && of[0].by == 1 && of[1].by == -1; }
     /// Returns whether weighted sums can be rounded (a weight other than 1 or -1).
-    [[nodiscard]] bool is_weighted() const {
-        return std::any_of(of.begin(), of.end(), [](const Weight& weight) { return std::fabs(weight.by) != 1; });
+    bool is_weighted() const {
+        return std::ranges::any_of(of, [](const Weight& weight) { return std::fabs(weight.by) != 1; });
     }
     /// Returns the angular acceleration caused by a torque of 1 on the joint alone.
-    [[nodiscard]] double lightness(const std::vector<Body>& bodies) const {
+    double lightness(const std::vector<Body>& bodies) const {
         double total = 0;
         for (const auto& [body, by] : of) total += by * by / bodies[body].inertia;
         return total;
@@ -123,30 +123,28 @@ struct System {
     Units units = {};
 
     /// Returns whether it is one unnamed body that an Oscillator represents completely.
-    [[nodiscard]] bool is_plain() const { return !named && joints.front().is_plain(); }
+    bool is_plain() const { return !named && joints.front().is_plain(); }
     /// Returns whether it is one body, with a name or without, that an Oscillator represents completely.
-    [[nodiscard]] bool is_alone() const {
-        return joints.size() == 1 && joints.front().is_plain() && !bodies.front().moved;
-    }
-    [[nodiscard]] bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
+    bool is_alone() const { return joints.size() == 1 && joints.front().is_plain() && !bodies.front().moved; }
+    bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
     /// The index of the joint with this name.
-    [[nodiscard]] std::optional<std::size_t> joint_named(std::string_view name) const {
+    std::optional<std::size_t> joint_named(std::string_view name) const {
         for (std::size_t j = 0; j < joints.size(); ++j) {
             if (joints[j].name == name) return j;
         }
         return {};
     }
-    [[nodiscard]] bool has_moved() const {
-        return std::any_of(bodies.begin(), bodies.end(), [](const Body& body) { return body.moved.has_value(); });
+    bool has_moved() const {
+        return std::ranges::any_of(bodies, [](const Body& body) { return body.moved.has_value(); });
     }
-    [[nodiscard]] bool is_linked(std::size_t body) const {
+    bool is_linked(std::size_t body) const {
         return std::any_of(joints.begin() + static_cast<std::ptrdiff_t>(bodies.size()), joints.end(),
                            [body](const Joint& joint) { return joint.is_on(body); });
     }
     /// "motor - 10 load"
-    [[nodiscard]] std::string angle_in_words(const Joint& joint) const;
+    std::string angle_in_words(const Joint& joint) const;
     /// The period of each body on the stiffness around it, with the others at rest; infinite without stiffness.
-    [[nodiscard]] std::vector<double> natural_periods() const {
+    std::vector<double> natural_periods() const {
         std::vector<double> stiffness(bodies.size(), 0), periods;
         for (const Joint& joint : joints) {
             for (const auto& [body, by] : joint.of) stiffness[body] += by * by * joint.stiffness;
@@ -157,9 +155,9 @@ struct System {
         }
         return periods;
     }
-    [[nodiscard]] double shortest_natural_period() const {
+    double shortest_natural_period() const {
         const std::vector<double> periods = natural_periods();
-        return *std::min_element(periods.begin(), periods.end());
+        return *std::ranges::min_element(periods);
     }
 };
 

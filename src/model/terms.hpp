@@ -1,23 +1,14 @@
-// The list of terms of an excitation: each is a file in model/terms and a row here.
+// The list of terms of an excitation: each is a struct in model/terms and a row here.
 #pragma once
 
 #include <variant>
 
-#include "model/terms/chirp.hpp"
-#include "model/terms/constant.hpp"
-#include "model/terms/exponential.hpp"
-#include "model/terms/gaussian.hpp"
-#include "model/terms/half_sine.hpp"
-#include "model/terms/harmonic.hpp"
+#include "model/terms/levels.hpp"
 #include "model/terms/polyline.hpp"
-#include "model/terms/polynomial.hpp"
-#include "model/terms/pulse.hpp"
-#include "model/terms/ramp.hpp"
-#include "model/terms/sawtooth.hpp"
 #include "model/terms/scripted.hpp"
-#include "model/terms/square.hpp"
-#include "model/terms/step.hpp"
-#include "model/terms/triangle.hpp"
+#include "model/terms/sines.hpp"
+#include "model/terms/smooth.hpp"
+#include "model/terms/waves.hpp"
 
 namespace dinal::model {
 

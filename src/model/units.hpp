@@ -19,28 +19,28 @@ struct Units {
     std::string M = {};  ///< empty: a torque without unit
 
     /// Returns whether no units were given: the angle in rad, the rest unnamed.
-    [[nodiscard]] bool usual() const { return theta == "rad" && t.empty() && M.empty(); }
+    bool usual() const { return theta == "rad" && t.empty() && M.empty(); }
     /// An error if a unit cannot appear in a line of text.
     [[nodiscard]] std::optional<text::Error> complaint() const;
 
     // Derived units; those that need M are empty without it.
-    [[nodiscard]] std::string speed() const;
-    [[nodiscard]] std::string frequency() const;
-    [[nodiscard]] std::string inertia() const;
-    [[nodiscard]] std::string damping() const;
-    [[nodiscard]] std::string stiffness() const;
-    [[nodiscard]] std::string energy() const;
+    std::string speed() const;
+    std::string frequency() const;
+    std::string inertia() const;
+    std::string damping() const;
+    std::string stiffness() const;
+    std::string energy() const;
     /// The unit of such numbers; empty if it has no name.
-    [[nodiscard]] std::string of(Quantity quantity) const;
+    std::string of(Quantity quantity) const;
     /// "s", or "time units"
-    [[nodiscard]] std::string times() const { return t.empty() ? "time units" : t; }
+    std::string times() const { return t.empty() ? "time units" : t; }
 
     /// "theta in m, t in s, M in N"; empty for the usual units.
-    [[nodiscard]] std::string in_words() const;
+    std::string in_words() const;
     /// "{ theta = \"m\", t = \"s\" }"
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
     /// The line that stores the units in a file.
-    [[nodiscard]] std::string in_file() const;
+    std::string in_file() const;
     /// Reads that line among these lines; returns the usual units if there is none.
     static Units from_file(std::span<const std::string> lines);
 };

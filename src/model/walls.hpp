@@ -18,11 +18,11 @@ struct Walls {
     double damping = 0;                                          ///< torque time per rad, of elastic walls
 
     /// The angle of the wall on this side (positive or not).
-    [[nodiscard]] double at(int side) const { return side > 0 ? upper : lower; }
-    [[nodiscard]] bool alike() const { return lower == -upper; }
-    [[nodiscard]] bool is_elastic() const { return stiffness < std::numeric_limits<double>::infinity(); }
+    double at(int side) const { return side > 0 ? upper : lower; }
+    bool alike() const { return lower == -upper; }
+    bool is_elastic() const { return stiffness < std::numeric_limits<double>::infinity(); }
     /// The torque of the elastic wall on this side at the given angle and velocity, with the sign of the penetration.
-    [[nodiscard]] double torque(int side, double theta, double velocity) const {
+    double torque(int side, double theta, double velocity) const {
         return stiffness * (theta - at(side)) + damping * velocity;
     }
 
@@ -31,7 +31,7 @@ struct Walls {
     /// An error if a motion cannot start at theta.
     [[nodiscard]] std::optional<text::Error> crossed_by(double theta) const;
     /// "{ lower = -0.8, upper = 0.8, restitution = 0.7 }"
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 };
 
 inline constexpr text::Range from_0_to_1{"be from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};

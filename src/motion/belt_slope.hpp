@@ -11,7 +11,7 @@ namespace dinal::motion {
 struct BeltSlope {
     double rate, doubt;  ///< velocity per time unit; `doubt` is its error from rounding or the belt's own noise
     /// The rate moved towards zero by its error.
-    [[nodiscard]] double sure() const { return std::copysign(std::max(0.0, std::fabs(rate) - doubt), rate); }
+    double sure() const { return std::copysign(std::max(0.0, std::fabs(rate) - doubt), rate); }
 };
 
 /// The interval over which a belt is differentiated, as a fraction of the motion's time scale.

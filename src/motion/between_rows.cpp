@@ -22,7 +22,7 @@ std::vector<double> first_times(const Run& run, double from, double to) {
         times.push_back(event.t);
         if (event.kind != model::EventKind::turn) times.push_back(std::nextafter(event.t, from));
     }
-    std::sort(times.begin(), times.end());
+    std::ranges::sort(times);
     times.erase(std::unique(times.begin(), times.end()), times.end());
     return times;
 }
@@ -78,9 +78,8 @@ void BetweenRows::append_values(double t, std::vector<double>& values) const {
     const model::State y = state ? *state : model::State{unknown, unknown};
     const std::vector<double> states = run_.states > 0 ? run_.course->states_at(t) : std::vector<double>();
     const auto first_state = static_cast<Eigen::Index>(run_.first_state());
-    const bool load = std::any_of(kinds_.begin(), kinds_.end(), [](const ColumnKind* kind) {
-        return kind != nullptr && kind->by == ColumnKind::By::load;
-    });
+    const bool load = std::ranges::any_of(
+        kinds_, [](const ColumnKind* kind) { return kind != nullptr && kind->by == ColumnKind::By::load; });
     const AtRow at{t, y, load ? M_->value(t, y) : unknown, unknown, run_.course->system().damping()};
     for (std::size_t i = 0; i < columns_.size(); ++i) {
         values.push_back(kinds_[i] != nullptr ? kinds_[i]->value(at)
@@ -91,7 +90,7 @@ void BetweenRows::append_values(double t, std::vector<double>& values) const {
 double BetweenRows::interpolated(Eigen::Index column, double t) const {
     const auto times = run_.rows.col(0);
     if (times.size() == 0) return unknown;
-    const Eigen::Index after = std::upper_bound(times.begin(), times.end(), t) - times.begin();
+    const Eigen::Index after = std::ranges::upper_bound(times, t) - times.begin();
     if (after == 0 || after == times.size()) return run_.rows(std::max<Eigen::Index>(after - 1, 0), column);
     const double part = (t - times[after - 1]) / (times[after] - times[after - 1]);
     return std::lerp(run_.rows(after - 1, column), run_.rows(after, column), part);
@@ -111,7 +110,7 @@ Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
     const std::vector<double> small = invisible(values, width);
     std::vector<char> straight(times.size(), 0);  // whether each interval is drawn straight
     straight.back() = 1;
-    while (times.size() < enough && std::find(straight.begin(), straight.end(), 0) != straight.end()) {
+    while (times.size() < enough && std::ranges::find(straight, 0) != straight.end()) {
         std::vector<double> more_times, more_values;
         std::vector<char> more_straight;
         for (std::size_t i = 0; i < times.size(); ++i) {
@@ -135,7 +134,7 @@ Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
     Growing<double> table(times.size(), names.size());
     for (std::size_t c = 0; c < names.size(); ++c) {
         const auto column = static_cast<Eigen::Index>(c);
-        const auto place = std::find(columns_.begin(), columns_.end(), column);
+        const auto place = std::ranges::find(columns_, column);
         for (std::size_t i = 0; i < times.size(); ++i) {
             table.writable()[c * times.size() + i] =
                 names[c] == "t"           ? times[i]

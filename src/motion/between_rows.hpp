@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "model/excitation.hpp"
@@ -17,19 +16,19 @@ public:
     BetweenRows(const Run& run, const model::Excitation* M);
 
     /// Returns whether the run kept its motion; otherwise only its rows are available.
-    [[nodiscard]] bool any() const { return !columns_.empty(); }
+    bool any() const { return !columns_.empty(); }
     /// The columns that can be evaluated at any time.
-    [[nodiscard]] const std::vector<Eigen::Index>& columns() const { return columns_; }
+    const std::vector<Eigen::Index>& columns() const { return columns_; }
     /// Appends the values of these columns; nan where the motion cannot be evaluated.
     void append_values(double t, std::vector<double>& values) const;
 
     /// The run between two times with rows at its events, and so close that straight lines between them look like the
     /// motion. Other columns are interpolated. Returns the run unchanged if the monitor stops it.
-    [[nodiscard]] Run drawn(double from, double to, const Monitor& monitor) const;
+    Run drawn(double from, double to, const Monitor& monitor) const;
 
 private:
-    [[nodiscard]] bool agrees_with_rows() const;
-    [[nodiscard]] double interpolated(Eigen::Index column, double t) const;
+    bool agrees_with_rows() const;
+    double interpolated(Eigen::Index column, double t) const;
 
     const Run& run_;
     const model::Excitation* M_;

@@ -38,8 +38,8 @@ constexpr double few_roundings = 64 * std::numeric_limits<double>::epsilon();
 /// Three values at evenly spaced times, and the distance of the middle one from the straight line.
 struct Triple {
     double a, fa, middle, fm, b, fb;
-    [[nodiscard]] double bend() const { return std::fabs(fa - 2 * fm + fb); }
-    [[nodiscard]] double noise() const {
+    double bend() const { return std::fabs(fa - 2 * fm + fb); }
+    double noise() const {
         return 8 * std::numeric_limits<double>::epsilon() * (std::fabs(fa) + std::fabs(fm) + std::fabs(fb));
     }
 };
@@ -128,7 +128,7 @@ public:
     /// Returns the next jump of f if the last breaks repeat after one, two or three of them and f does jump at the
     /// predicted time. Costs about six values instead of sixty. Does not evaluate f beyond `end`.
     template <class F>
-    [[nodiscard]] std::optional<double> next(double end, const F& f) const {
+    std::optional<double> next(double end, const F& f) const {
         constexpr double known_to = 8 * std::numeric_limits<double>::epsilon();  // relative accuracy of a break's time
         const std::size_t latest = last_.size() - 1;
         for (std::size_t after = 1; 2 * after <= latest; ++after) {

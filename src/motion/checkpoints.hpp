@@ -14,22 +14,22 @@ class Checkpoints {
 public:
     explicit Checkpoints(std::size_t steps) { list_.reserve(std::min(steps / spacing_ + 2, most)); }
 
-    [[nodiscard]] bool due(std::size_t step) const { return step == next_; }
-    [[nodiscard]] std::size_t next() const { return next_; }
+    bool due(std::size_t step) const { return step == next_; }
+    std::size_t next() const { return next_; }
     void add(const Checkpoint& checkpoint) {
         if (list_.size() == most) thin_out();
         if (checkpoint.step % spacing_ == 0) list_.push_back(checkpoint);
         next_ = (checkpoint.step / spacing_ + 1) * spacing_;
     }
     /// The last checkpoint at or before this step, and the next one (null at the end).
-    [[nodiscard]] const Checkpoint& before(std::size_t step) const { return list_[index(step)]; }
-    [[nodiscard]] const Checkpoint* after(std::size_t step) const {
+    const Checkpoint& before(std::size_t step) const { return list_[index(step)]; }
+    const Checkpoint* after(std::size_t step) const {
         const std::size_t i = index(step) + 1;
         return i < list_.size() ? &list_[i] : nullptr;
     }
 
 private:
-    [[nodiscard]] std::size_t index(std::size_t step) const { return std::min(step / spacing_, list_.size() - 1); }
+    std::size_t index(std::size_t step) const { return std::min(step / spacing_, list_.size() - 1); }
     void thin_out() {
         for (std::size_t i = 0; 2 * i < list_.size(); ++i) list_[i] = list_[2 * i];
         list_.resize((list_.size() + 1) / 2);

@@ -8,10 +8,10 @@ struct Clock {
     double lo = 0;  ///< its rounding error
 
     /// The time `dt` later, rounded once.
-    [[nodiscard]] double after(double dt) const { return hi + (lo + dt); }
+    double after(double dt) const { return hi + (lo + dt); }
     /// The duration from this time to t.
-    [[nodiscard]] double until(double t) const { return (t - hi) - lo; }
-    [[nodiscard]] Clock later(double dt) const {
+    double until(double t) const { return (t - hi) - lo; }
+    Clock later(double dt) const {
         const double sum = hi + dt;
         const double part = sum - hi;
         const double rest = lo + ((hi - (sum - part)) + (dt - part));

@@ -29,10 +29,10 @@ public:
                                                        : std::max(last.from, last.course->whole_until())),
           bytes_(before.bytes_ + last.course->bytes()) {}
 
-    [[nodiscard]] text::Expected<model::State> at(double t) const override { return course_at(t).at(t); }
-    [[nodiscard]] std::vector<double> states_at(double t) const override { return course_at(t).states_at(t); }
-    [[nodiscard]] double whole_until() const override { return whole_until_; }
-    [[nodiscard]] std::vector<double> piece_ends() const override {
+    text::Expected<model::State> at(double t) const override { return course_at(t).at(t); }
+    std::vector<double> states_at(double t) const override { return course_at(t).states_at(t); }
+    double whole_until() const override { return whole_until_; }
+    std::vector<double> piece_ends() const override {
         std::vector<double> all;
         for (const Part& part : parts_) {
             const std::vector<double> own = part.course->piece_ends();
@@ -43,10 +43,10 @@ public:
     void legs(const std::function<void(const Leg&)>& visit) const override {
         for (const Part& part : parts_) part.course->legs(visit);
     }
-    [[nodiscard]] std::size_t bytes() const override { return bytes_; }
+    std::size_t bytes() const override { return bytes_; }
 
 private:
-    [[nodiscard]] const Course& course_at(double t) const {
+    const Course& course_at(double t) const {
         const auto after = std::upper_bound(parts_.begin() + 1, parts_.end(), t,
                                             [](double time, const Part& part) { return time < part.from; });
         return *(after - 1)->course;

@@ -10,6 +10,7 @@
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "text/expected.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion {
 
@@ -29,10 +30,10 @@ struct Work {
 /// start of the leg.
 class Leg {
 public:
-    [[nodiscard]] virtual double length() const = 0;
-    [[nodiscard]] virtual double since_start(double t) const = 0;
+    virtual double length() const = 0;
+    virtual double since_start(double t) const = 0;
     /// The work done from the start of the leg up to the time `since_start`, clamped to the leg.
-    [[nodiscard]] virtual Work work(double since_start) const = 0;
+    virtual Work work(double since_start) const = 0;
 
 protected:
     Leg() = default;
@@ -41,30 +42,28 @@ protected:
     ~Leg() = default;
 };
 
-class Course {
+class Course : text::NotCopied {
 public:
     explicit Course(const model::Oscillator& system) : system_(system) {}
-    Course(const Course&) = delete;
-    Course& operator=(const Course&) = delete;
     virtual ~Course() = default;
 
-    [[nodiscard]] const model::Oscillator& system() const { return system_; }
+    const model::Oscillator& system() const { return system_; }
     /// theta and velocity at a time of the run, with the accuracy of its integrator.
-    [[nodiscard]] virtual text::Expected<model::State> at(double t) const = 0;
+    virtual text::Expected<model::State> at(double t) const = 0;
 
     /// The run's own states at a time; empty if it has none.
-    [[nodiscard]] virtual std::vector<double> states_at(double /*t*/) const { return {}; }
+    virtual std::vector<double> states_at(double /*t*/) const { return {}; }
 
     /// The time up to which the motion is stored completely, so that at() need not evaluate M and legs() covers it:
     /// `never` if all of it is. Integrators that only store checkpoints return -never.
-    [[nodiscard]] virtual double whole_until() const { return -model::never; }
+    virtual double whole_until() const { return -model::never; }
     /// The ends of smooth pieces, in order; besides events they include user actions and switches of conditions on the
     /// motion. Empty if only events and breaks of M divide the motion.
-    [[nodiscard]] virtual std::vector<double> piece_ends() const { return {}; }
+    virtual std::vector<double> piece_ends() const { return {}; }
     /// Visits the legs in order, without gaps.
     virtual void legs(const std::function<void(const Leg&)>& /*visit*/) const {}
     /// The memory used for the motion between the rows.
-    [[nodiscard]] virtual std::size_t bytes() const { return 0; }
+    virtual std::size_t bytes() const { return 0; }
 
 private:
     model::Oscillator system_;

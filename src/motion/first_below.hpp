@@ -29,19 +29,19 @@ public:
         slope_floor_ = rounding * size(slope_);
     }
     [[nodiscard]] double operator()(double x) const { return value(f_, x); }
-    [[nodiscard]] double slope(double x) const { return value(slope_, x); }
-    [[nodiscard]] double second_bound() const { return second_; }
+    double slope(double x) const { return value(slope_, x); }
+    double second_bound() const { return second_; }
     /// An upper bound of how far the curve sags below its chord over this width.
-    [[nodiscard]] double dip(double width) const { return second_ * width * width / 8; }
+    double dip(double width) const { return second_ * width * width / 8; }
     /// Returns whether the curve between these two values, `width` apart, is positive.
-    [[nodiscard]] bool stays_above(double a, double b, double width) const { return std::min(a, b) > dip(width); }
+    bool stays_above(double a, double b, double width) const { return std::min(a, b) > dip(width); }
     /// The rounding error of a value.
-    [[nodiscard]] double floor() const { return floor_; }
+    double floor() const { return floor_; }
     /// Raise the rounding error of values or slopes, for a curve that is a difference of larger numbers.
     void raise_floor(double least) { floor_ = std::max(floor_, least); }
     void raise_slope_floor(double least) { slope_floor_ = std::max(slope_floor_, least); }
     /// The lowest point around x if the curve touches zero within rounding without clearly crossing it.
-    [[nodiscard]] double lowest_near(double x) const {
+    double lowest_near(double x) const {
         const double reach = second_ > 0 ? 2 * std::sqrt(8 * floor_ / second_) : 0;
         double a = std::max(-1.0, x - reach), b = std::min(1.0, x + reach);
         if (!(slope(a) < -slope_floor_ && slope(b) > slope_floor_)) return x;
@@ -52,10 +52,10 @@ public:
         }
         return b;
     }
-    [[nodiscard]] const Samples& at_nodes() const { return at_nodes_; }
+    const Samples& at_nodes() const { return at_nodes_; }
     /// The distance from -1 up to which a curve that leaves zero there is certainly positive: by its slope, or if that
     /// is zero, too, by its curvature. 0 if neither decides.
-    [[nodiscard]] double leaves_upward() const {
+    double leaves_upward() const {
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];
         const double by_slope = at_left > 0 ? 2 * at_left / second_ : 0;
@@ -71,7 +71,7 @@ public:
 
     /// The curve divided by 1 + x. Requires f(-1) = 0; its other zeros remain. The rounding error near -1 is about that
     /// of a slope, farther away more than that of f.
-    [[nodiscard]] Bounded divided() const {
+    Bounded divided() const {
         constexpr double nearest = 32;  // factor by which the division enlarges the rounding of values
         Series<n> quotient{};
         for (std::size_t k = n - 1; k > 0; --k) {

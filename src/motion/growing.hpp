@@ -35,37 +35,37 @@ public:
     Growing(std::size_t rows, T* values, std::size_t columns, std::shared_ptr<void> owner)
         : store_(std::make_shared<Store>(Store{std::move(owner), values, rows, columns, rows})), size_(rows) {}
 
-    [[nodiscard]] std::size_t size() const { return size_; }
-    [[nodiscard]] bool empty() const { return size_ == 0; }
-    [[nodiscard]] std::size_t columns() const { return store_ == nullptr ? 0 : store_->columns; }
+    std::size_t size() const { return size_; }
+    bool empty() const { return size_ == 0; }
+    std::size_t columns() const { return store_ == nullptr ? 0 : store_->columns; }
 
     [[nodiscard]] const T& operator()(std::size_t row, std::size_t column) const {
         return row < placed() ? store_->column(column)[row] : last_[column];
     }
-    [[nodiscard]] std::span<const T> column(std::size_t column) const {
+    std::span<const T> column(std::size_t column) const {
         if (size_ == 0) return {};
         place_last();
         return {store_->column(column), size_};
     }
     /// The distance between the beginnings of two columns.
-    [[nodiscard]] std::size_t stride() const {
+    std::size_t stride() const {
         place_last();
         return store_ == nullptr ? 0 : store_->room;
     }
 
     // Access to the first column, as to a list:
-    [[nodiscard]] const T& operator[](std::size_t row) const { return (*this)(row, 0); }
-    [[nodiscard]] const T& front() const { return (*this)(0, 0); }
-    [[nodiscard]] const T& back() const { return (*this)(size_ - 1, 0); }
-    [[nodiscard]] auto begin() const { return column(0).begin(); }
-    [[nodiscard]] auto end() const { return column(0).end(); }
+    const T& operator[](std::size_t row) const { return (*this)(row, 0); }
+    const T& front() const { return (*this)(0, 0); }
+    const T& back() const { return (*this)(size_ - 1, 0); }
+    auto begin() const { return column(0).begin(); }
+    auto end() const { return column(0).end(); }
 
     /// Pointer to the values of a new table. Must not be used on shared rows.
     [[nodiscard]] T* writable() { return store_ == nullptr ? nullptr : store_->values; }
 
     /// The first `kept` rows followed by those of `later`. New memory reserves room for at most as many rows again, up
     /// to `most` in total.
-    [[nodiscard]] Growing followed_by(std::size_t kept, const Growing& later, std::size_t most) const {
+    Growing followed_by(std::size_t kept, const Growing& later, std::size_t most) const {
         assert(kept <= size_);
         if (later.empty() && kept == size_) return *this;
         Growing both;
@@ -83,7 +83,7 @@ public:
     }
 
     /// A copy of the first rows in memory of its own.
-    [[nodiscard]] Growing first(std::size_t rows) const {
+    Growing first(std::size_t rows) const {
         assert(rows <= size_);
         Growing part(rows, columns());
         for (std::size_t column = 0; column < columns(); ++column) copy(column, 0, rows, part.store_->column(column));
@@ -91,9 +91,7 @@ public:
     }
 
     /// The bytes of this table; 0 if other tables share them.
-    [[nodiscard]] std::size_t own_bytes() const {
-        return store_.use_count() == 1 ? store_->room * store_->columns * sizeof(T) : 0;
-    }
+    std::size_t own_bytes() const { return store_.use_count() == 1 ? store_->room * store_->columns * sizeof(T) : 0; }
 
 private:
     struct Store {
@@ -103,7 +101,7 @@ private:
         std::size_t used;       ///< rows claimed by any table
         std::vector<T> list{};  // owns `values` if they were given as a vector
 
-        [[nodiscard]] T* column(std::size_t i) const { return values + i * room; }
+        T* column(std::size_t i) const { return values + i * room; }
         static std::shared_ptr<Store> with_room(std::size_t rows, std::size_t columns) {
             if (rows == 0) return std::make_shared<Store>(Store{nullptr, nullptr, 0, columns, 0});
             auto own = std::make_shared_for_overwrite<T[]>(rows * columns);
@@ -112,7 +110,7 @@ private:
         }
     };
 
-    [[nodiscard]] std::size_t placed() const { return size_ - (last_.empty() ? 0 : 1); }
+    std::size_t placed() const { return size_ - (last_.empty() ? 0 : 1); }
 
     void copy(std::size_t column, std::size_t from, std::size_t until, T* to) const {
         const std::size_t stored = std::min(until, placed());
@@ -121,8 +119,7 @@ private:
     }
 
     /// The memory for rows after the first `kept`: behind them, or a new one with spare room.
-    [[nodiscard]] std::shared_ptr<Store> store_for(std::size_t kept, std::size_t rows, std::size_t columns,
-                                                   std::size_t most) const {
+    std::shared_ptr<Store> store_for(std::size_t kept, std::size_t rows, std::size_t columns, std::size_t most) const {
         const bool free = store_ != nullptr && store_->used == std::min(kept, placed()) && rows <= store_->room;
         if (free) return store_;
         return Store::with_room(std::max(rows, std::min(rows + kept, most)), columns);

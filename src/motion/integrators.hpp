@@ -9,7 +9,7 @@
 #include "motion/exact/exact.hpp"
 #include "motion/rk4/rk4.hpp"
 #include "motion/spectral/spectral.hpp"
-#include "text/fixed_text.hpp"
+#include "text/words.hpp"
 
 namespace dinal::motion {
 

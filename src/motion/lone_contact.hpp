@@ -32,46 +32,44 @@ public:
     /// pushes at rest and brakes in motion.
     LoneContact(const Problem& problem, std::vector<model::Event>* events, double at_once);
 
-    [[nodiscard]] Phase phase() const { return phase_; }
+    Phase phase() const { return phase_; }
     /// Returns whether the mass is at rest to rounding.
-    [[nodiscard]] bool stuck() const {
-        return phase_ == Phase::stuck || phase_ == Phase::held || phase_ == Phase::creeping;
-    }
+    bool stuck() const { return phase_ == Phase::stuck || phase_ == Phase::held || phase_ == Phase::creeping; }
     /// The direction of motion or creep; `stuck` if there is no dry friction and the mass has not moved yet.
-    [[nodiscard]] model::Motion motion() const { return motion_; }
+    model::Motion motion() const { return motion_; }
     /// Returns whether there is no dry friction: the mass swings through zero, and only turned() records events.
-    [[nodiscard]] bool passes() const { return !system_.dry(); }
+    bool passes() const { return !system_.dry(); }
     /// The direction in which M moves a mass at rest, or `stuck`. A creeping mass keeps its direction, or reverses when
     /// it has stopped.
-    [[nodiscard]] model::Motion pulled(double M, double theta) const {
+    model::Motion pulled(double M, double theta) const {
         const model::Pull pull = pull_of(M, theta);
         return pull.beyond > 0 ? pull.towards : model::Motion::stuck;
     }
     /// The limit of M - k theta towards this side: the breakaway torque, or for a creeping mass the sliding friction,
     /// with a margin for rounding.
-    [[nodiscard]] double limit(model::Motion side) const {
+    double limit(model::Motion side) const {
         if (phase_ != Phase::creeping) return system_.holding(side);
         return contact::limit_of_creep(side, motion_, balance(), apart_);
     }
     /// The excess of M over the limit; positive exactly if the law releases the mass.
-    [[nodiscard]] double excess(double M, double theta) const { return pull_of(M, theta).beyond; }
+    double excess(double M, double theta) const { return pull_of(M, theta).beyond; }
     /// Returns whether M can never move the mass again, because M is constant or never large enough.
-    [[nodiscard]] bool for_good(const Standstill& now) const;
+    bool for_good(const Standstill& now) const;
     /// The state at which to evaluate a feedback that jumps at velocity zero: at or beyond zero, the smallest velocity
     /// in the direction of motion.
-    [[nodiscard]] model::State on_side_of_motion(const model::State& y) const;
+    model::State on_side_of_motion(const model::State& y) const;
     /// Returns whether a feedback jumps at velocity zero. A step that evaluated it on both sides would find a
     /// compromise that does not exist.
-    [[nodiscard]] bool jumps(double t, double theta) const;
+    bool jumps(double t, double theta) const;
 
     /// M at the stop; a feedback sees velocity exactly 0, not the residual.
-    [[nodiscard]] double M_at_rest(double t, double theta, double M) const {
+    double M_at_rest(double t, double theta, double M) const {
         return feedback_ ? excitation_.value(t, {theta, 0}) : M;
     }
 
     /// The angle of a mass that has stopped: theta, or if that exceeds the limit of sticking by no more than
     /// accumulated rounding, the angle at the limit.
-    [[nodiscard]] double place_at_stop(const Standstill& now) const;
+    double place_at_stop(const Standstill& now) const;
 
     /// Reports that the velocity has reached zero.
     void arrive() { phase_ = Phase::arrived; }
@@ -105,24 +103,24 @@ public:
         Phase phase = Phase::moving;
         double apart = 0;
     };
-    [[nodiscard]] Mark mark() const { return {motion_, phase_, apart_}; }
+    Mark mark() const { return {motion_, phase_, apart_}; }
     void return_to(const Mark& mark) { motion_ = mark.motion, phase_ = mark.phase, apart_ = mark.apart; }
 
     /// Returns whether it was stuck from the start until something moved it.
-    [[nodiscard]] bool began_stuck() const { return began_stuck_; }
+    bool began_stuck() const { return began_stuck_; }
     /// The time of the last event, -never if there was none.
-    [[nodiscard]] double last_event_time() const {
+    double last_event_time() const {
         return events_ == nullptr || events_->empty() ? -model::never : events_->back().t;
     }
 
 private:
-    [[nodiscard]] bool at_start(double t) const { return t <= start_; }
-    [[nodiscard]] double torques(const Standstill& now) const {
+    bool at_start(double t) const { return t <= start_; }
+    double torques(const Standstill& now) const {
         return std::fabs(now.M) + std::fabs(system_.pull_back(now.theta)) + system_.greatest_holding();
     }
     /// The friction torque of a creeping mass.
-    [[nodiscard]] double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
-    [[nodiscard]] model::Pull pull_of(double M, double theta) const {
+    double balance() const { return model::sign_of(motion_) * system_.braking(motion_); }
+    model::Pull pull_of(double M, double theta) const {
         if (phase_ != Phase::creeping) return model::pull_at_rest(system_, M, theta);
         return contact::pull_on_creep(std::fma(-system_.stiffness(), theta, M), motion_, balance(), apart_);
     }

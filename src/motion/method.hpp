@@ -87,24 +87,22 @@ public:
     MethodView(const std::variant<M...>& one)  // NOLINT(google-explicit-constructor)
         : MethodView(std::visit([](const auto& method) { return MethodView(method); }, one)) {}
 
-    [[nodiscard]] const MethodText& about() const { return common_->about; }
+    const MethodText& about() const { return common_->about; }
     /// The Lua expression that constructs the method.
-    [[nodiscard]] std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
+    std::string lua_text(text::Defaults defaults) const { return common_->lua_text(method_, defaults); }
     /// An error if an option is out of range, or wrong for this system or excitation.
     [[nodiscard]] std::optional<text::Error> wrong(const model::Oscillator& system,
                                                    const model::Excitation& excitation) const {
         return common_->wrong(method_, system, excitation);
     }
-    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {
-        return common_->resolution(method_, system);
-    }
-    [[nodiscard]] Run run(const Problem& problem) const { return common_->run(method_, problem); }
-    [[nodiscard]] std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
+    Resolution resolution(const model::Oscillator& system) const { return common_->resolution(method_, system); }
+    Run run(const Problem& problem) const { return common_->run(method_, problem); }
+    std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
     /// Returns whether M is evaluated in order of time, so that a memory in M does no harm.
-    [[nodiscard]] bool asks_in_order() const { return common_->asks_in_order; }
+    bool asks_in_order() const { return common_->asks_in_order; }
     /// The stretches of a method that runs any system with states, user events, belts, bases and controllers; otherwise
     /// empty.
-    [[nodiscard]] std::optional<Cut> cut() const { return common_->cut(method_); }
+    std::optional<Cut> cut() const { return common_->cut(method_); }
 
 private:
     struct Common {

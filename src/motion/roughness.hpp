@@ -11,7 +11,7 @@ struct Roughness {
     double most = 0, usual = 0, size = 0;
 
     /// Returns whether at least two intervals are rough; a jump would make only one rough.
-    [[nodiscard]] bool is_noise() const {
+    bool is_noise() const {
         constexpr double alike = 0.1;
         return usual > alike * most;
     }

@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "motion/simulate.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion {
 
-class RowWriter {
+class RowWriter : text::NotCopied {
 public:
     /// Requires a grid from Grid::within; reserves all its rows.
     RowWriter(const model::Oscillator& system, const Grid& grid, Run& run)
@@ -22,12 +23,10 @@ public:
         run.rows = Rows(std::move(table));
         set_next();
     }
-    RowWriter(const RowWriter&) = delete;
-    RowWriter& operator=(const RowWriter&) = delete;
 
     /// The time of the next row; `never` after the last one.
-    [[nodiscard]] double next_time() const { return next_time_; }
-    [[nodiscard]] std::size_t next_row() const { return next_; }
+    double next_time() const { return next_time_; }
+    std::size_t next_row() const { return next_; }
 
     void put(const model::State& y, double M, double friction) {
         double* row = column_ + next_;
@@ -55,7 +54,7 @@ public:
         }
     }
     /// The number of steps of length h between two rows if they coincide to rounding, otherwise 0.
-    [[nodiscard]] std::size_t steps_per_row(double h) const {
+    std::size_t steps_per_row(double h) const {
         const double ratio = grid_.dt() / h;
         const double whole = std::round(ratio);
         return whole >= 1 && std::fabs(ratio - whole) <= 4e-16 * whole ? static_cast<std::size_t>(whole) : 0;

@@ -35,13 +35,13 @@ Rows::Rows(Eigen::MatrixXd values) {
 
 std::optional<Eigen::Index> Run::find(std::string_view name) const {
     const std::vector<std::string>& all = names();
-    const auto it = std::find(all.begin(), all.end(), name);
+    const auto it = std::ranges::find(all, name);
     if (it == all.end()) return {};
     return static_cast<Eigen::Index>(it - all.begin());
 }
 
 Growing<model::Event> Run::told_events() const {
-    const auto first = std::find_if(events.begin(), events.end(), [](const model::Event& e) { return e.user >= 0; });
+    const auto first = std::ranges::find_if(events, [](const model::Event& e) { return e.user >= 0; });
     const auto repeats = [&](const model::Event& e) { return e.user >= 0 && e.where != first->where; };
     if (std::none_of(first, events.end(), repeats)) return events;
     std::vector<model::Event> told;

@@ -8,11 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "model/contradiction.hpp"
 #include "model/event.hpp"
 #include "model/friction.hpp"
 #include "model/oscillator.hpp"
-#include "model/outcome.hpp"
 #include "motion/columns.hpp"
 #include "motion/course.hpp"
 #include "motion/growing.hpp"
@@ -32,19 +30,19 @@ public:
     explicit Rows(Growing<double> table) : table_(std::move(table)) {}
     explicit Rows(Eigen::MatrixXd values);
 
-    [[nodiscard]] Eigen::Index rows() const { return static_cast<Eigen::Index>(table_.size()); }
-    [[nodiscard]] Eigen::Index cols() const { return static_cast<Eigen::Index>(table_.columns()); }
+    Eigen::Index rows() const { return static_cast<Eigen::Index>(table_.size()); }
+    Eigen::Index cols() const { return static_cast<Eigen::Index>(table_.columns()); }
     [[nodiscard]] double operator()(Eigen::Index row, Eigen::Index column) const {
         return table_(static_cast<std::size_t>(row), static_cast<std::size_t>(column));
     }
-    [[nodiscard]] Eigen::Map<const Eigen::VectorXd> col(Eigen::Index column) const {
+    Eigen::Map<const Eigen::VectorXd> col(Eigen::Index column) const {
         return {table_.column(static_cast<std::size_t>(column)).data(), rows()};
     }
-    [[nodiscard]] Matrix matrix() const {
+    Matrix matrix() const {
         return {rows() == 0 ? nullptr : table_.column(0).data(), rows(), cols(),
                 Eigen::OuterStride<>(static_cast<Eigen::Index>(table_.stride()))};
     }
-    [[nodiscard]] const Growing<double>& table() const { return table_; }
+    const Growing<double>& table() const { return table_; }
     friend bool operator==(const Rows& a, const Rows& b) { return a.matrix() == b.matrix(); }
 
 private:
@@ -94,26 +92,24 @@ struct Run {
     std::shared_ptr<const Course> course;  ///< null if declined, or if the run was read from a file
 
     /// Returns whether the jumps dominate the duration of the computation.
-    [[nodiscard]] bool jumps_often() const {
+    bool jumps_often() const {
         constexpr std::size_t often = 10000;
         return jumps >= often;
     }
-    [[nodiscard]] Eigen::Index size() const { return rows.rows(); }
+    Eigen::Index size() const { return rows.rows(); }
     /// The events; a user's events only once.
-    [[nodiscard]] Growing<model::Event> told_events() const;
+    Growing<model::Event> told_events() const;
     /// One name for each column of `rows` that users see.
-    [[nodiscard]] const std::vector<std::string>& names() const {
-        return computed && own_names.empty() ? column_names() : own_names;
-    }
-    [[nodiscard]] std::optional<Eigen::Index> find(std::string_view name) const;
-    [[nodiscard]] auto column(Column which) const { return rows.col(static_cast<Eigen::Index>(which)); }
+    const std::vector<std::string>& names() const { return computed && own_names.empty() ? column_names() : own_names; }
+    std::optional<Eigen::Index> find(std::string_view name) const;
+    auto column(Column which) const { return rows.col(static_cast<Eigen::Index>(which)); }
 
     /// theta and velocity at t: from the integrator if available, otherwise by cubic interpolation of the rows.
     /// Fails if t is outside the run or the columns are missing.
-    [[nodiscard]] text::Expected<model::State> at(double t) const;
-    [[nodiscard]] std::size_t first_state() const { return names().size() - states; }
+    text::Expected<model::State> at(double t) const;
+    std::size_t first_state() const { return names().size() - states; }
     /// Returns whether it keeps its motion between the rows.
-    [[nodiscard]] bool is_dense() const;
+    bool is_dense() const;
 };
 
 /// theta and velocity at t by cubic interpolation of the rows alone.

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -38,17 +37,17 @@ public:
     static Grid none() { return Grid(false, 0, {}); }
 
     /// A list of times: the first `kept` of this grid, which are already rows, followed by `more`.
-    [[nodiscard]] Grid followed_by(std::size_t kept, std::vector<double> more) const;
+    Grid followed_by(std::size_t kept, std::vector<double> more) const;
 
     /// Fails if dt is not positive, or times do not increase or leave the window.
-    [[nodiscard]] text::Expected<Grid> within(const Window& window) const;
-    [[nodiscard]] double dt() const { return dt_; }
-    [[nodiscard]] std::span<const double> times() const { return times_; }
+    text::Expected<Grid> within(const Window& window) const;
+    double dt() const { return dt_; }
+    std::span<const double> times() const { return times_; }
 
     // Requires a grid from within():
-    [[nodiscard]] const Window& window() const { return window_; }
-    [[nodiscard]] std::size_t count() const { return count_; }
-    [[nodiscard]] double time(std::size_t row) const {
+    const Window& window() const { return window_; }
+    std::size_t count() const { return count_; }
+    double time(std::size_t row) const {
         if (!spaced_) return list_[row];
         // A signed number is converted by one instruction.
         return row + 1 == count_ ? window_.end : window_.start + static_cast<double>(static_cast<long long>(row)) * dt_;
@@ -124,5 +123,17 @@ Run completed(const model::System& system, const model::Drive& drive, Run run);
 Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint);
 /// The number of columns of a run's rows.
 std::size_t columns_of(const model::System& system, const model::Drive& drive);
+
+// ---- a continued run: the rows that exist, and those still to be computed
+
+/// All rows of a run continued to t_end. Fails as simulate() does.
+text::Expected<Grid> grid_of_both(const Run& so_far, double t_end, const Grid& rows, std::size_t columns,
+                                  const Limits& limits);
+
+struct RowsToCome {
+    std::size_t kept;  ///< rows of the first part that remain
+    std::vector<double> times;
+};
+RowsToCome rows_to_come(const Run& so_far, const Grid& grid);
 
 }  // namespace dinal::motion

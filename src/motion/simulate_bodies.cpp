@@ -11,7 +11,6 @@
 #include "motion/engine/modes.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/engine/run.hpp"
-#include "motion/resumed_rows.hpp"
 #include "motion/simulate.hpp"
 #include "motion/stillness.hpp"
 
@@ -57,7 +56,7 @@ std::optional<text::Error> wrong_for_bodies(MethodView method, const model::Syst
                            .option = "integrator"};
     }
     const auto resolves = [&](const model::Oscillator& mode) {
-        return std::none_of(drive.loads.begin(), drive.loads.end(), [&](const model::Excitation& load) {
+        return std::ranges::none_of(drive.loads, [&](const model::Excitation& load) {
             return wrong_method(method, mode, load, window).has_value();
         });
     };

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "model/sticking.hpp"
 
 namespace dinal::motion {
@@ -27,7 +27,7 @@ std::size_t last_stop(const Growing<model::Event>& events) {
 /// Returns whether something except M may move the mass.
 bool moved_by_others(const model::Drive& drive) {
     const auto acts = [](const model::WantedEvent& event) { return event.act != nullptr; };
-    return !drive.belt().components().empty() || std::any_of(drive.events.begin(), drive.events.end(), acts);
+    return !drive.belt().components().empty() || std::ranges::any_of(drive.events, acts);
 }
 
 /// Returns whether M keeps the mass stuck at the very end; M may have jumped after the integrator's last decision.
@@ -82,7 +82,7 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(run.size()); i += stride) {
         times.push_back(run.rows(static_cast<Eigen::Index>(i), 0));
     }
-    std::sort(times.begin(), times.end());
+    std::ranges::sort(times);
     constexpr double parts = 8, halvings = 50;
     std::vector<model::Event> turns;
     if (!run.course) return turns;

@@ -245,8 +245,7 @@ namespace {
 
 bool has_functions(const model::Drive& drive) {
     const auto has = [](const model::Excitation& one) { return one.has_script(); };
-    return std::any_of(drive.loads.begin(), drive.loads.end(), has) ||
-           std::any_of(drive.belts.begin(), drive.belts.end(), has) || drive.base.has_script() ||
+    return std::ranges::any_of(drive.loads, has) || std::ranges::any_of(drive.belts, has) || drive.base.has_script() ||
            !drive.states.empty() || !drive.events.empty();
 }
 
@@ -261,7 +260,7 @@ bool has_functions(const model::System& system, const model::Drive& drive) {
         return !joint.friction.is_constant() || joint.friction.law.as<model::laws::UserLaw>() != nullptr ||
                joint.spring.as<model::springs::UserSpring>() != nullptr;
     };
-    return std::any_of(system.joints.begin(), system.joints.end(), has) || has_functions(drive);
+    return std::ranges::any_of(system.joints, has) || has_functions(drive);
 }
 
 }  // namespace dinal::motion

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "model/contradiction.hpp"
 #include "model/drive.hpp"
+#include "model/event.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
 
@@ -126,8 +126,8 @@ class UnderOath {
 public:
     UnderOath(const model::Oscillator& system, const model::Drive& drive);
 
-    [[nodiscard]] const model::Oscillator& system() const { return system_; }
-    [[nodiscard]] const model::Drive& drive() const { return drive_; }
+    const model::Oscillator& system() const { return system_; }
+    const model::Drive& drive() const { return drive_; }
 
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole) { return witnesses_.verdict(whole); }
 

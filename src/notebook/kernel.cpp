@@ -29,6 +29,7 @@
 #include "prompt/script.hpp"
 #include "prompt/session.hpp"
 #include "terminal/progress.hpp"
+#include "text/not_copied.hpp"
 #include "text/words.hpp"
 
 namespace dinal::notebook {
@@ -121,7 +122,7 @@ void answer(const Json& message) {
 }
 
 /// Lines of standard input, hidden from scripts: programs that they start read an empty input.
-class Requests {
+class Requests : text::NotCopied {
 public:
     Requests() : input_(::fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1)) {
         const int nothing = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
@@ -129,8 +130,6 @@ public:
         ::close(nothing);
     }
     ~Requests() { ::close(input_); }
-    Requests(const Requests&) = delete;
-    Requests& operator=(const Requests&) = delete;
 
     std::optional<std::string> next() {
         for (std::size_t searched = 0;;) {

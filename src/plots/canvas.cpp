@@ -39,7 +39,7 @@ const Canvas::Cell& Canvas::cell(int column, int row) const {
 }
 
 bool Canvas::has_ink() const {
-    return std::any_of(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.ink != 0; });
+    return std::ranges::any_of(cells_, [](const Cell& cell) { return cell.ink != 0; });
 }
 
 Canvas::Cell* Canvas::cell_of_dot(int x, int y) {

@@ -18,10 +18,10 @@ public:
     Canvas(int columns, int rows, Charset charset);
 
     // In dots from the upper left corner. Dots are square.
-    [[nodiscard]] int width() const { return columns_ * cell_width_; }
-    [[nodiscard]] int height() const { return rows_ * cell_height_; }
-    [[nodiscard]] int columns() const { return columns_; }
-    [[nodiscard]] int rows() const { return rows_; }
+    int width() const { return columns_ * cell_width_; }
+    int height() const { return rows_ * cell_height_; }
+    int columns() const { return columns_; }
+    int rows() const { return rows_; }
 
     /// Sets a dot; ignored outside. `ink` is 1, 2, ... for a curve, 0 for the background.
     void dot(int x, int y, std::uint8_t ink);
@@ -36,14 +36,14 @@ public:
         std::uint8_t ink = 0;     // the first curve that drew here
         std::string_view glyph;   // must outlive the canvas
     };
-    [[nodiscard]] const Cell& cell(int column, int row) const;
-    [[nodiscard]] bool has_ink() const;  ///< whether a curve has dots here
+    const Cell& cell(int column, int row) const;
+    bool has_ink() const;  ///< whether a curve has dots here
     /// The text of the cell. In ASCII, `mark` replaces the dots of a curve (0 keeps their shape), `behind` those of the
     /// background.
-    [[nodiscard]] std::string text(const Cell& cell, char mark, char behind) const;
+    std::string text(const Cell& cell, char mark, char behind) const;
 
 private:
-    [[nodiscard]] std::size_t place(int column, int row) const;
+    std::size_t place(int column, int row) const;
     Cell* cell_of_dot(int x, int y);  // null outside
 
     int columns_, rows_;

@@ -24,7 +24,7 @@ struct Extent {
         low = std::min(low, other.low);
         high = std::max(high, other.high);
     }
-    [[nodiscard]] bool empty() const { return low > high; }
+    bool empty() const { return low > high; }
 };
 
 /// Extends y to the other edge of an area, its base or zero.
@@ -138,8 +138,8 @@ Scale::Scale(Interval range, bool logarithmic)
       factor_(1 / ((logarithmic ? std::log10(range.high) : range.high) - low_)) {}
 
 View view_of(const Figure& figure) {
-    const bool has_points = std::any_of(figure.curves.begin(), figure.curves.end(),
-                                        [](const Curve& curve) { return curve.style == Style::points; });
+    const bool has_points =
+        std::ranges::any_of(figure.curves, [](const Curve& curve) { return curve.style == Style::points; });
     Extents extents = extents_of(figure);
     if (figure.circles) {
         include_origin(extents.x);
@@ -172,7 +172,7 @@ Box equal_box(View& view, Box most) {
 std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
     std::vector<MarkKind> kinds;
     for (const Mark& mark : marks) {
-        if (std::find(kinds.begin(), kinds.end(), mark.kind) == kinds.end()) {
+        if (std::ranges::find(kinds, mark.kind) == kinds.end()) {
             kinds.push_back(mark.kind);
         }
     }
@@ -192,8 +192,8 @@ struct Seen {
 Seen seen_of(const Curve& curve, Interval window) {
     const auto x = curve.x.values.first(curve.size()), y = curve.y.values.first(curve.size());
     Seen seen;
-    seen.first = static_cast<std::size_t>(std::lower_bound(x.begin(), x.end(), window.low) - x.begin());
-    seen.last = static_cast<std::size_t>(std::upper_bound(x.begin(), x.end(), window.high) - x.begin());
+    seen.first = static_cast<std::size_t>(std::ranges::lower_bound(x, window.low) - x.begin());
+    seen.last = static_cast<std::size_t>(std::ranges::upper_bound(x, window.high) - x.begin());
     double direction = 0;
     for (std::size_t i = seen.first + 1; i < seen.last; ++i) {
         const double change = y[i] - y[i - 1];
@@ -287,7 +287,7 @@ Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::siz
 /// Returns whether the curve can be replaced if too dense: a line over increasing x.
 bool is_line_over_x(const Curve& curve) {
     const auto x = curve.x.values.first(curve.size());
-    return curve.style == Style::line && std::is_sorted(x.begin(), x.end());
+    return curve.style == Style::line && std::ranges::is_sorted(x);
 }
 
 Seen seen_in(const Figure& figure, const Curve& curve) {

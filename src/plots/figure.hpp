@@ -28,7 +28,7 @@ struct Numbers {
 struct Interval {
     double low = 0;
     double high = 1;
-    [[nodiscard]] double length() const { return high - low; }
+    double length() const { return high - low; }
 };
 
 enum class Style { line, points, fill };
@@ -45,7 +45,7 @@ struct Curve {
     int colour = 0;                    ///< 1, 2, ... in the palette; 0: by position
     std::optional<Numbers> base = {};  ///< fills extend from y to this, by default to zero
     bool behind = false;               ///< whether it is drawn first; a dense curve becomes a band
-    [[nodiscard]] std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
+    std::size_t size() const { return std::min(x.values.size(), y.values.size()); }
 };
 
 inline constexpr const char* style_names[] = {"line", "points", "fill"};
@@ -116,15 +116,15 @@ inline constexpr double shortest_axis = 1e-305;
 class Scale {
 public:
     Scale(Interval range, bool logarithmic);
-    [[nodiscard]] Interval range() const { return range_; }
-    [[nodiscard]] bool logarithmic() const { return logarithmic_; }
+    Interval range() const { return range_; }
+    bool logarithmic() const { return logarithmic_; }
     /// 0 at the low end, 1 at the high end; NaN outside of the domain.
     [[nodiscard]] double operator()(double value) const {
         return ((logarithmic_ ? std::log10(value) : value) - low_) * factor_;
     }
-    [[nodiscard]] bool has(double value) const { return drawable(value, logarithmic_); }
+    bool has(double value) const { return drawable(value, logarithmic_); }
     /// The value at that fraction of the axis.
-    [[nodiscard]] double at(double fraction) const {
+    double at(double fraction) const {
         const double place = low_ + fraction / factor_;
         return logarithmic_ ? std::pow(10, place) : place;
     }

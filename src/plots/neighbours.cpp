@@ -9,10 +9,9 @@ using Pair = std::pair<std::size_t, std::size_t>;
 
 /// Rates a body as the first of the row: 2 if it is an end that is never second in a link, 1 if it is an end.
 int merit(std::size_t body, std::span<const Pair> links) {
-    const auto named = std::count_if(links.begin(), links.end(),
-                                     [body](const Pair& link) { return link.first == body || link.second == body; });
-    const bool driven =
-        std::any_of(links.begin(), links.end(), [body](const Pair& link) { return link.second == body; });
+    const auto named =
+        std::ranges::count_if(links, [body](const Pair& link) { return link.first == body || link.second == body; });
+    const bool driven = std::ranges::any_of(links, [body](const Pair& link) { return link.second == body; });
     return named > 1 ? 0 : driven ? 1 : 2;
 }
 
@@ -32,7 +31,7 @@ std::vector<std::size_t> neighbours(std::size_t count, std::span<const Pair> lin
         }
         put(next);
         for (bool found = true; found;) {
-            const auto link = std::find_if(links.begin(), links.end(), [&](const Pair& pair) {
+            const auto link = std::ranges::find_if(links, [&](const Pair& pair) {
                 return (pair.first == row.back() && !placed[pair.second]) ||
                        (pair.second == row.back() && !placed[pair.first]);
             });

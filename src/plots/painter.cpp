@@ -18,7 +18,7 @@
 #include "plots/svg_words.hpp"
 #include "plots/thinning.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::plots {
 
@@ -71,7 +71,7 @@ public:
                                                       CAIRO_FORMAT_ARGB32, width, height, 4 * width)) {}
 
     /// A drawing context in the coordinates of the sheet.
-    [[nodiscard]] Context context() const {
+    Context context() const {
         Context context(cairo_create(surface.get()));
         cairo_scale(context.get(), scale_, scale_);
         cairo_translate(context.get(), -corner_.x, -corner_.y);
@@ -203,9 +203,9 @@ public:
     }
 
 private:
-    [[nodiscard]] double x_of(double value) const { return panel_.left + panel_.view.x(value) * size_.width; }
-    [[nodiscard]] double y_of(double value) const { return panel_.bottom - panel_.view.y(value) * size_.height; }
-    [[nodiscard]] bool sees(double x, double y) const {
+    double x_of(double value) const { return panel_.left + panel_.view.x(value) * size_.width; }
+    double y_of(double value) const { return panel_.bottom - panel_.view.y(value) * size_.height; }
+    bool sees(double x, double y) const {
         const double right = panel_.view.x(x), up = panel_.view.y(y);
         return right >= 0 && right <= 1 && up >= 0 && up <= 1;
     }
@@ -222,7 +222,7 @@ private:
         cairo_restore(to);
     }
 
-    [[nodiscard]] Image image() const {
+    Image image() const {
         constexpr double most = 4e6;  // pixels
         return {{panel_.left, panel_.top}, size_, std::min(resolution, std::sqrt(most / (size_.width * size_.height)))};
     }
@@ -271,7 +271,7 @@ private:
         const std::vector<double> right = edges_between(shades.x, panel_.view.x.logarithmic());
         const std::vector<double> up = edges_between(shades.y, panel_.view.y.logarithmic());
         const auto place = [](const std::vector<double>& edges, double value) {  // edges.size() - 1: outside
-            const auto next = std::upper_bound(edges.begin(), edges.end(), value);
+            const auto next = std::ranges::upper_bound(edges, value);
             return static_cast<std::size_t>((next == edges.begin() ? edges.end() : next) - edges.begin()) - 1;
         };
         Image map = image();
@@ -308,7 +308,7 @@ private:
             const std::vector<std::size_t>& kept = traces.emplace_back(thinned(curve, paper));
             const double each = curve.style == Style::line ? 1 : is_crowd(curve) || curve.style == Style::fill ? 2 : 10;
             corners += each * static_cast<double>(kept.size());
-            any = any || std::any_of(kept.begin(), kept.end(), [&](std::size_t place) { return has(curve, place); });
+            any = any || std::ranges::any_of(kept, [&](std::size_t place) { return has(curve, place); });
         }
         if (!any) page_.words({"(no points)", (panel_.left + panel_.right) / 2, (panel_.bottom + panel_.top) / 2});
         const bool too_many = corners > most_corners_;
@@ -324,19 +324,19 @@ private:
         return curve.style == Style::points && curve.size() > most_separate_points;
     }
 
-    [[nodiscard]] std::uint32_t colour_of(std::size_t curve) const {
+    std::uint32_t colour_of(std::size_t curve) const {
         const int own = figure_.curves[curve].colour;
         return palette[(own > 0 ? static_cast<std::size_t>(own - 1) : curve) % palette.size()];
     }
 
     /// A point of a curve on the page. Far points are moved nearer, as cairo uses 32-bit coordinates.
-    [[nodiscard]] Point at(const Curve& curve, std::size_t place) const {
+    Point at(const Curve& curve, std::size_t place) const {
         constexpr double far = 700;  // lengths of the axes
         return {panel_.left + std::clamp(panel_.view.x(curve.x.values[place]), -far, far) * size_.width,
                 panel_.bottom - std::clamp(panel_.view.y(curve.y.values[place]), -far, far) * size_.height};
     }
 
-    [[nodiscard]] bool has(const Curve& curve, std::size_t place) const {
+    bool has(const Curve& curve, std::size_t place) const {
         return panel_.view.x.has(curve.x.values[place]) && panel_.view.y.has(curve.y.values[place]) &&
                (!curve.base || panel_.view.y.has(curve.base->values[place]));
     }
@@ -552,8 +552,7 @@ private:
                          panel_.bottom - end.up * size_.height - 0.6 * em},
                         Align::left);
         }
-        std::stable_sort(outside.begin(), outside.end(),
-                         [](const NamedEnd& a, const NamedEnd& b) { return a.up > b.up; });
+        std::ranges::stable_sort(outside, std::ranges::greater{}, &NamedEnd::up);
         constexpr double apart = 1.2 * em;
         std::vector<double> places;
         for (const NamedEnd& end : outside) {

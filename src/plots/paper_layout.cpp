@@ -1,4 +1,4 @@
-#include "plots/paper_layout.hpp"
+#include "plots/painter.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -48,7 +48,7 @@ std::string with_offset(const std::string& label, const Ticks& ticks) {
 bool ends_with_name(const Figure& figure, const Curve& curve) {
     const auto& y = curve.y.values;
     return figure.ends && curve.style == Style::line && !curve.label.empty() &&
-           std::any_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); });
+           std::ranges::any_of(y, [](double value) { return std::isfinite(value); });
 }
 
 std::vector<LegendEntry> legend_of(const Figure& figure) {

@@ -33,8 +33,7 @@ Symbol symbol_of(std::string_view name) {
     if (const motion::ColumnKind* kind = motion::find_column_kind(inner)) {
         return {kind->name, kind->symbol, kind->quantity};
     }
-    const auto* found =
-        std::find_if(ratios.begin(), ratios.end(), [inner](const Symbol& symbol) { return symbol.name == inner; });
+    const auto* found = std::ranges::find(ratios, inner, &Symbol::name);
     return found != ratios.end() ? *found
                                  : Symbol{name, name, name.ends_with("/k") ? Quantity::angle : Quantity::other};
 }
@@ -83,7 +82,7 @@ text::Expected<Numbers> column(const RunData& run, std::string_view name) {
         return plain;
     }
     std::vector<double> scaled(plain->values.size());
-    std::transform(plain->values.begin(), plain->values.end(), scaled.begin(), [&by](double x) { return x / *by; });
+    std::ranges::transform(plain->values, scaled.begin(), [&by](double x) { return x / *by; });
     return Numbers::own(std::move(scaled));
 }
 
@@ -100,7 +99,7 @@ bool is_excited(const RunData& run, std::string_view name) {
 std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
     if (!has(run, "theta")) {
         const auto& names = run.result->names();
-        const auto other = std::find_if(names.begin(), names.end(), [x](const std::string& name) { return name != x; });
+        const auto other = std::ranges::find_if(names, [x](const std::string& name) { return name != x; });
         return {other != names.end() ? *other : std::string(x)};
     }
     std::vector<std::string> names{"theta"};
@@ -157,7 +156,7 @@ std::vector<std::vector<std::string>> by_quantity(const std::vector<std::string>
     std::vector<std::vector<std::string>> groups;
     for (const std::string& name : names) {
         const Quantity quantity = symbol_of(name).quantity;
-        const auto same = std::find_if(groups.begin(), groups.end(), [quantity](const std::vector<std::string>& group) {
+        const auto same = std::ranges::find_if(groups, [quantity](const std::vector<std::string>& group) {
             return symbol_of(group.front()).quantity == quantity;
         });
         same != groups.end() ? same->push_back(name) : groups.push_back({name});
@@ -169,7 +168,7 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
                                          const std::vector<std::string>& names) {
     Figure figure;
     figure.x.label = axis_label(run, across);
-    const bool with_theta = std::find(names.begin(), names.end(), "theta") != names.end();
+    const bool with_theta = std::ranges::find(names, "theta") != names.end();
     for (const std::string& name : names) {
         const auto values = column(run, name);
         if (!values) {
@@ -182,9 +181,8 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
                                  .behind = is_load && with_theta});
     }
     const Symbol first = symbol_of(names.front());
-    const bool alike = std::all_of(names.begin(), names.end(), [&first](const std::string& name) {
-        return symbol_of(name).symbol == first.symbol;
-    });
+    const bool alike = std::ranges::all_of(
+        names, [&first](const std::string& name) { return symbol_of(name).symbol == first.symbol; });
     if (names.size() == 1) {
         figure.y.label = axis_label(run, names.front());
     } else if (alike) {
@@ -225,7 +223,7 @@ text::Expected<std::vector<Figure>> column_figures(const RunData& run, const Col
         figures.push_back(std::move(figure).value());
         figures.back().below = figures.size() > 1;
         for (std::size_t i = 0; i < group.size(); ++i) {
-            const auto place = std::find(names.begin(), names.end(), group[i]) - names.begin();
+            const auto place = std::ranges::find(names, group[i]) - names.begin();
             if (place < static_cast<std::ptrdiff_t>(asked.labels.size())) {
                 figures.back().curves[i].label = asked.labels[static_cast<std::size_t>(place)];
             }
@@ -247,7 +245,7 @@ void add_corners(Curve& curve, const motion::Run& run, double by) {
         return e.kind > model::EventKind::rest && e.kind != model::EventKind::user;
     };
     const auto times = run.find("t");
-    if (!times || std::none_of(run.events.begin(), run.events.end(), is_corner)) {
+    if (!times || std::ranges::none_of(run.events, is_corner)) {
         return;
     }
     std::vector<double> x, y;

@@ -16,9 +16,8 @@ constexpr std::size_t most_values = 10;  // values with their own shades
 
 std::vector<double> finite_values(const Shades& shades) {
     std::vector<double> values;
-    std::copy_if(shades.z.begin(), shades.z.end(), std::back_inserter(values),
-                 [](double z) { return std::fabs(z) <= 1e300; });
-    std::sort(values.begin(), values.end());
+    std::ranges::copy_if(shades.z, std::back_inserter(values), [](double z) { return std::fabs(z) <= 1e300; });
+    std::ranges::sort(values);
     return values;
 }
 
@@ -83,15 +82,14 @@ std::optional<Interval> colour_range(const Shades& shades) {
 Absences absences_of(const Shades& shades) {
     const std::vector<double> sorted = finite_values(shades);
     const bool some = !sorted.empty() && sorted.front() == 0 && sorted.back() > 0 && colour_range(shades).has_value();
-    return {some, std::any_of(shades.z.begin(), shades.z.end(), [](double z) { return std::isnan(z); })};
+    return {some, std::ranges::any_of(shades.z, [](double z) { return std::isnan(z); })};
 }
 
 std::optional<std::size_t> band_of(const std::vector<ShadeBand>& bands, double z) {
     if (std::isnan(z) || bands.empty()) return std::nullopt;
     const bool single = std::isfinite(bands.back().to);  // each band is one number
     if (single && std::isinf(z)) return std::nullopt;
-    const auto next = std::upper_bound(bands.begin(), bands.end(), z,
-                                       [](double value, const ShadeBand& b) { return value < b.from; });
+    const auto next = std::ranges::upper_bound(bands, z, {}, &ShadeBand::from);
     return next == bands.begin() ? 0 : static_cast<std::size_t>(next - bands.begin()) - 1;
 }
 
@@ -135,9 +133,8 @@ std::uint32_t shade_colour(std::size_t band, std::size_t count) {
 
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii) {
     constexpr std::string_view digits = "0123456789";
-    const bool are_digits = std::all_of(bands.begin(), bands.end(), [](const ShadeBand& b) {
-        return b.text.size() == 1 && b.text[0] >= '0' && b.text[0] <= '9';
-    });
+    const bool are_digits = std::ranges::all_of(
+        bands, [](const ShadeBand& b) { return b.text.size() == 1 && b.text[0] >= '0' && b.text[0] <= '9'; });
     if (are_digits) return digits.substr(static_cast<std::size_t>(bands[band].text[0] - '0'), 1);
     if (bands.size() > static_cast<std::size_t>(most_text_bands)) return digits.substr(band % digits.size(), 1);
     constexpr std::array<std::string_view, 5> shades{"·", "░", "▒", "▓", "█"};

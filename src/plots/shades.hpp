@@ -16,7 +16,7 @@ struct Shades {
     std::string label = {};
     std::optional<Interval> limits = {};  ///< values beyond have the first or last shade
 
-    [[nodiscard]] double at(std::size_t i, std::size_t j) const { return z[j * x.size() + i]; }
+    double at(std::size_t i, std::size_t j) const { return z[j * x.size() + i]; }
 };
 
 /// The range from <= z < to of one shade; the first and last are open.

@@ -8,7 +8,7 @@
 #include "plots/figure.hpp"
 #include "plots/shades.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::plots {
 namespace {
@@ -77,8 +77,7 @@ std::string swings_text(const std::vector<Point>& turns) {
 }
 
 std::string course_over_x(const std::vector<Point>& points) {
-    const auto [low, high] =
-        std::minmax_element(points.begin(), points.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
+    const auto [low, high] = std::ranges::minmax_element(points, {}, &Point::y);
     const double from = points.front().y, to = points.back().y;
     if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
     constexpr double visible = 0.01;  // fraction of the height
@@ -103,13 +102,13 @@ std::string course_of(const View& view, const Curve& curve) {
     const auto by_y = [](const Point& a, const Point& b) { return a.y < b.y; };
     const Point from = points.front(), to = points.back();
     if (points.size() == 1) return fmt::format("a point at ({:.4g}, {:.4g})", from.x, from.y);
-    const auto [left, right] = std::minmax_element(points.begin(), points.end(), by_x);
-    const auto [low, high] = std::minmax_element(points.begin(), points.end(), by_y);
+    const auto [left, right] = std::ranges::minmax_element(points, by_x);
+    const auto [low, high] = std::ranges::minmax_element(points, by_y);
     const std::string box =
         fmt::format("across from {:.4g} to {:.4g}, up from {:.4g} to {:.4g}", left->x, right->x, low->y, high->y);
     if (curve.style == Style::fill) return "an area " + box;
     if (curve.style == Style::points) return fmt::format("{} points, {}", points.size(), box);
-    if (std::is_sorted(points.begin(), points.end(), by_x)) return course_over_x(points);
+    if (std::ranges::is_sorted(points, by_x)) return course_over_x(points);
     return fmt::format("a path from ({:.4g}, {:.4g}) to ({:.4g}, {:.4g}), {}", from.x, from.y, to.x, to.y, box);
 }
 

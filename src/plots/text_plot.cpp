@@ -23,12 +23,8 @@ namespace {
 struct Projection {
     View view;
     Box box;  // size in dots between the edges
-    [[nodiscard]] double x(double value) const {
-        return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan("");
-    }
-    [[nodiscard]] double y(double value) const {
-        return view.y.has(value) ? (1 - view.y(value)) * (box.height - 1) : std::nan("");
-    }
+    double x(double value) const { return view.x.has(value) ? view.x(value) * (box.width - 1) : std::nan(""); }
+    double y(double value) const { return view.y.has(value) ? (1 - view.y(value)) * (box.height - 1) : std::nan(""); }
 };
 
 struct Signs {
@@ -213,7 +209,7 @@ void draw_shades(Canvas& canvas, const Shades& shades, const Projection& project
     const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
     const std::vector<double> y = edges_between(shades.y, projection.view.y.logarithmic());
     const auto place = [](const std::vector<double>& edges, double value) {
-        return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), value) - edges.begin());
+        return static_cast<std::size_t>(std::ranges::upper_bound(edges, value) - edges.begin());
     };
     const int wide = canvas.width() / canvas.columns(), high = canvas.height() / canvas.rows();
     for (int row = 0; row < canvas.rows(); ++row) {
@@ -242,8 +238,7 @@ void draw(Canvas& canvas, const Figure& figure, const Projection& projection, co
     }
     // The first curve drawn in a cell wins, so background curves come last.
     std::vector<std::size_t> order = drawing_order(figure);
-    const auto front =
-        std::find_if(order.begin(), order.end(), [&](std::size_t i) { return !figure.curves[i].behind; });
+    const auto front = std::ranges::find_if(order, [&](std::size_t i) { return !figure.curves[i].behind; });
     std::rotate(order.begin(), front, order.end());
     for (const std::size_t i : order) {
         const Curve& curve = figure.curves[i];
@@ -316,8 +311,8 @@ public:
         }
     }
 
-    [[nodiscard]] std::size_t width() const { return width_; }
-    [[nodiscard]] std::string text() const {
+    std::size_t width() const { return width_; }
+    std::string text() const {
         constexpr std::string_view empty_braille = "\xE2\xA0\x80";
         std::string_view text = text_;
         for (;;) {
@@ -468,8 +463,8 @@ public:
     }
 
 private:
-    [[nodiscard]] TextLine empty_line() const { return TextLine(format_.colours); }
-    [[nodiscard]] std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
+    TextLine empty_line() const { return TextLine(format_.colours); }
+    std::string shown(std::string_view text) const { return shown_in(format_.charset, text); }
 
     /// Label width and number of ticks depend on each other: repeats until they agree.
     void lay_out() {
@@ -506,16 +501,16 @@ private:
         }
     }
 
-    [[nodiscard]] bool long_x_label() const { return text::columns(x_label()) > letters_at_end - 1; }
-    [[nodiscard]] std::string x_label() const {
+    bool long_x_label() const { return text::columns(x_label()) > letters_at_end - 1; }
+    std::string x_label() const {
         return shown(figure_.x.label + (x_ticks_.offset.empty() ? "" : " (" + x_ticks_.offset + ")"));
     }
-    [[nodiscard]] std::string y_label() const {
+    std::string y_label() const {
         return shown(figure_.y.label + (y_ticks_.offset.empty() ? "" : " (" + y_ticks_.offset + ")"));
     }
 
     /// The label of the vertical axis and the legend, on a limited number of lines.
-    [[nodiscard]] TextBlock head_lines() const {
+    TextBlock head_lines() const {
         TextBlock lines;
         TextLine line = empty_line();
         const std::string name = figure_.axes ? y_label() : "";
@@ -544,7 +539,7 @@ private:
         return lines;
     }
 
-    [[nodiscard]] TextLine centred(const std::string& words) const {
+    TextLine centred(const std::string& words) const {
         const std::string whole = shown(words);
         const std::string_view text = text::cut_to_columns(whole, static_cast<std::size_t>(format_.columns));
         const std::size_t before = figure_.axes ? label_width_ + 2 : 0;
@@ -558,7 +553,7 @@ private:
     }
 
     /// The letters at the right edge at the ends of the curves.
-    [[nodiscard]] std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
+    std::vector<std::vector<std::uint8_t>> letters_of_rows(const Projection& projection) const {
         std::vector<std::vector<std::uint8_t>> rows(static_cast<std::size_t>(rows_));
         for (std::size_t i = 0; letters_at_ends(figure_) && i < figure_.curves.size(); ++i) {
             const Curve& curve = figure_.curves[i];
@@ -574,10 +569,10 @@ private:
         return rows;
     }
 
-    [[nodiscard]] std::size_t row_of(double dot) const {
+    std::size_t row_of(double dot) const {
         return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 4 : 2);
     }
-    [[nodiscard]] std::size_t column_of(double dot) const {
+    std::size_t column_of(double dot) const {
         return static_cast<std::size_t>(std::max(0, nearest_dot(dot))) / (format_.charset == Charset::braille ? 2 : 1);
     }
 
@@ -655,7 +650,7 @@ private:
         }
     }
 
-    [[nodiscard]] TextLine stuck_line() const {
+    TextLine stuck_line() const {
         const auto width = static_cast<std::size_t>(columns_);
         std::vector<bool> stuck(width, false);
         for (const Interval& span : figure_.stuck) {
@@ -713,8 +708,7 @@ std::string text_plot(std::span<const Figure> given, const TextFormat& format) {
     const std::vector<Figure> figures = with_envelopes(with_bands(given, dots * format.columns),
                                                        (format.charset == Charset::ascii ? 1 : dots) * format.columns);
     TextFormat each = format;
-    const auto piles =
-        std::count_if(figures.begin(), figures.end(), [](const Figure& figure) { return !figure.below; });
+    const auto piles = std::ranges::count_if(figures, [](const Figure& figure) { return !figure.below; });
     const int count = std::max(1, static_cast<int>(piles));
     const bool together = (format.columns - 2 * (count - 1)) / count >= narrowest_panel;
     if (together) {

@@ -15,7 +15,7 @@ public:
     Projected(const Curve& curve, const Paper& paper) : curve_(curve), paper_(paper) {}
 
     /// Returns whether the point exists: finite, and positive on logarithmic axes.
-    [[nodiscard]] bool has(std::size_t i) const {
+    bool has(std::size_t i) const {
         return paper_.view.x.has(curve_.x.values[i]) && paper_.view.y.has(curve_.y.values[i]) &&
                (!curve_.base || paper_.view.y.has(curve_.base->values[i]));
     }
@@ -126,7 +126,7 @@ struct ColumnOfPixels {
             return;
         }
         std::array<std::size_t, 4> points{first, lowest, highest, last};
-        std::sort(points.begin(), points.end());
+        std::ranges::sort(points);
         const auto* end = std::unique(points.begin(), points.end());
         kept.insert(kept.end(), points.begin(), points.begin() + (end - points.begin()));
         first = none;
@@ -198,7 +198,7 @@ std::vector<std::size_t> by_pixels(const Curve& curve, const Paper& paper) {
 bool has_columns(const Curve& curve) {
     const auto x = curve.x.values.first(curve.size());
     double before = -std::numeric_limits<double>::infinity();
-    return curve.style != Style::points && std::all_of(x.begin(), x.end(), [&before](double value) {
+    return curve.style != Style::points && std::ranges::all_of(x, [&before](double value) {
                const bool falls = value < before;
                before = std::isnan(value) ? before : value;
                return !falls;

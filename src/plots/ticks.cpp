@@ -59,7 +59,7 @@ std::vector<double> powers_of_ten(Interval range, int most) {
             at.push_back(factor * std::pow(10.0, exponent));
         }
     }
-    std::sort(at.begin(), at.end());
+    std::ranges::sort(at);
     at.erase(std::remove_if(at.begin(), at.end(),
                             [range](double x) { return x < range.low * (1 - 1e-9) || x > range.high * (1 + 1e-9); }),
              at.end());
@@ -105,7 +105,7 @@ int finest_digit(const std::vector<double>& at, double length) {
     const int least = exponent_of(length) - 4;
     for (int digit = exponent_of(length) + 1; digit > least; --digit) {
         const double unit = std::pow(10.0, digit);
-        if (std::all_of(at.begin(), at.end(), [unit, length](double x) {
+        if (std::ranges::all_of(at, [unit, length](double x) {
                 const double rounding = std::max(1e-6 * length, 1e-15 * std::fabs(x));
                 return std::fabs(std::round(x / unit) * unit - x) <= rounding;
             })) {
@@ -141,7 +141,7 @@ void label_linear(Ticks& ticks, Interval range) {
 
 /// Plain numbers if all are of moderate size, otherwise powers of ten except for 1.
 std::vector<std::string> logarithmic(const std::vector<double>& at) {
-    const bool plain = std::all_of(at.begin(), at.end(), [](double value) { return value >= 1e-3 && value < 1e5; });
+    const bool plain = std::ranges::all_of(at, [](double value) { return value >= 1e-3 && value < 1e5; });
     std::vector<std::string> text;
     text.reserve(at.size());
     for (const double value : at) {
@@ -156,9 +156,9 @@ Ticks ticks_of(const Axis& axis, const Scale& scale, int most) {
     Ticks ticks;
     const Interval range = scale.range();
     if (!axis.ticks.empty()) {
-        std::copy_if(axis.ticks.begin(), axis.ticks.end(), std::back_inserter(ticks.at),
-                     [range](double x) { return x >= range.low && x <= range.high; });
-        std::sort(ticks.at.begin(), ticks.at.end());
+        std::ranges::copy_if(axis.ticks, std::back_inserter(ticks.at),
+                             [range](double x) { return x >= range.low && x <= range.high; });
+        std::ranges::sort(ticks.at);
     } else if (axis.division && range.length() / *axis.division < most_divisions) {
         ticks.at = multiples(*axis.division, range);
     } else if (scale.logarithmic()) {
@@ -184,13 +184,13 @@ std::vector<double> circles_of(const Figure& figure, const Ticks& x, const Ticks
         std::vector<double> list;
         for (const double at : ticks.at) {
             const double radius = std::fabs(at);
-            if (radius > 0 && std::none_of(list.begin(), list.end(), [radius](double known) {
+            if (radius > 0 && std::ranges::none_of(list, [radius](double known) {
                     return std::fabs(known - radius) <= 1e-9 * radius;
                 })) {
                 list.push_back(radius);
             }
         }
-        std::sort(list.begin(), list.end());
+        std::ranges::sort(list);
         return list;
     };
     if (!figure.circles || !figure.axes) {

@@ -37,7 +37,7 @@ struct Arguments {
     std::vector<const char*> words;  ///< the whole command line
     std::size_t script = 0;          ///< index of the script in `words`; words.size() without a script
 
-    [[nodiscard]] bool has_script() const { return script < words.size(); }
+    bool has_script() const { return script < words.size(); }
 };
 
 /// Fails for the first option that is unknown or lacks its value.

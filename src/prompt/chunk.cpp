@@ -4,7 +4,6 @@
 
 #include <unistd.h>
 #include <algorithm>
-#include <cctype>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -21,6 +20,7 @@
 #include "prompt/output.hpp"
 #include "prompt/printer.hpp"
 #include "terminal/display.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -97,7 +97,7 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
             continue;
         }
         const char letter = text[first];
-        if (cautious && text[cut] == '\n' && std::isalnum(static_cast<unsigned char>(letter)) == 0 && letter != '_') {
+        if (cautious && text[cut] == '\n' && !text::is_name_char(letter)) {
             continue;
         }
         const std::string begin = text.substr(0, cut + 1);
@@ -187,8 +187,8 @@ Chunk compile(lua_State* L, const std::string& text) {
 
 bool only_reads_variable(const Chunk& chunk) {
     const std::vector<lua::Token> all = lua::tokens(chunk.expression);
-    const auto code = std::count_if(all.begin(), all.end(),
-                                    [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
+    const auto code =
+        std::ranges::count_if(all, [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
     return chunk.statements.empty() && code == 1 && all.front().kind == lua::TokenKind::name;
 }
 

@@ -18,7 +18,6 @@
 #include "help/lua_words.hpp"
 #include "help/tour.hpp"
 #include "lua/bind.hpp"
-#include "lua/lua_text.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/tokens.hpp"
@@ -196,7 +195,7 @@ void list_folder(Session& /*session*/, const std::string& argument) {
         say_error(fmt::format(":ls: '{}': {}", text::displayable(folder), wrong.message()));
         return;
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     const std::size_t width = terminal::display_of(STDOUT_FILENO).width;
     say_value(names.empty() ? "no files\n" : text::wrapped(fmt::format("{}", fmt::join(names, "  ")), width) + "\n");
 }
@@ -252,14 +251,13 @@ void help(Session& session, const std::string& argument) {
 
 /// The command with this name, or with a unique beginning; otherwise nullptr.
 const Command* find(std::string_view name) {
-    const auto* const exact =
-        std::find_if(commands.begin(), commands.end(), [name](const Command& c) { return c.name == name; });
+    const auto* const exact = std::ranges::find(commands, name, &Command::name);
     if (exact != commands.end()) {
         return exact;
     }
     const auto begins = [name](const Command& c) { return !name.empty() && c.name.starts_with(name); };
-    const auto* const first = std::find_if(commands.begin(), commands.end(), begins);
-    const bool only = std::count_if(commands.begin(), commands.end(), begins) == 1;
+    const auto* const first = std::ranges::find_if(commands, begins);
+    const bool only = std::ranges::count_if(commands, begins) == 1;
     return only ? first : nullptr;
 }
 
@@ -276,8 +274,7 @@ std::string_view name_of(std::string_view line) {
 
 void tell_unknown(std::string_view name) {
     std::vector<std::string_view> names;
-    std::transform(commands.begin(), commands.end(), std::back_inserter(names),
-                   [](const Command& c) { return c.name; });
+    std::ranges::transform(commands, std::back_inserter(names), [](const Command& c) { return c.name; });
     const std::string hint =
         name == "record" ? "; :save writes your inputs to a script" : text::did_you_mean(name, names);
     say_error(fmt::format("there is no command :{}{}", name, hint.empty() ? "; :help lists them" : hint));
@@ -362,7 +359,7 @@ std::string answer_to(lua_State* L, std::string_view line) {
         return help::tour_page(1);
     }
     const std::vector<std::string> own = lua::users_globals(L);
-    if (!help::lua_word(words).empty() && std::find(own.begin(), own.end(), words) == own.end()) {
+    if (!help::lua_word(words).empty() && std::ranges::find(own, words) == own.end()) {
         return help::help_about(words, screen);
     }
     const int top = lua_gettop(L);
@@ -370,8 +367,7 @@ std::string answer_to(lua_State* L, std::string_view line) {
     const Meaning found = meaning(L, all);
     std::string answer = entry(found, screen);
     if (const std::vector<std::string> names = help::help_names();
-        answer.empty() && found.kind == Meaning::Kind::value &&
-        std::find(names.begin(), names.end(), words) == names.end()) {
+        answer.empty() && found.kind == Meaning::Kind::value && std::ranges::find(names, words) == names.end()) {
         lua_pushcfunction(L, show_value);
         lua_insert(L, -2);
         const bool shown = call(L, 1, 1) == LUA_OK;

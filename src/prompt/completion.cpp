@@ -21,7 +21,7 @@ namespace {
 /// The names that begin with the word, sorted.
 std::vector<std::string> fitting(std::vector<std::string> names, std::string_view word) {
     std::erase_if(names, [word](const std::string& name) { return !name.starts_with(word); });
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
 }
@@ -129,8 +129,7 @@ OpenTable open_table(lua_State* L, const OpenCall& call) {
     text::Fields::Place place = text::Fields::Place::itself;
     for (const std::string_view name : call.path) {
         if (known != nullptr && place == text::Fields::Place::itself) {
-            const auto row = std::find_if(known->options.begin(), known->options.end(),
-                                          [name](const text::Option& option) { return option.name == name; });
+            const auto row = std::ranges::find(known->options, name, &text::Option::name);
             const text::Fields table = row == known->options.end() ? text::Fields{} : row->fields;
             known = table.call;
             place = table.place;
@@ -165,13 +164,13 @@ std::vector<std::string> joint_names(lua_State* L, const OpenCall& call) {
 std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
     const OpenTable table = open_table(L, call);
     std::vector<std::string> names = joint_names(L, call);
-    std::erase_if(names, [&](const auto& name) { return std::count(call.given.begin(), call.given.end(), name) > 0; });
+    std::erase_if(names, [&](const auto& name) { return std::ranges::count(call.given, name) > 0; });
     for (std::string& name : names) name += " = ";
     if (table.list) {
         names.emplace_back("{ ");
     }
     for (const text::Option& option : table.options) {
-        if (std::find(call.given.begin(), call.given.end(), option.name) == call.given.end()) {
+        if (std::ranges::find(call.given, option.name) == call.given.end()) {
             names.push_back(std::string(option.name) + " = ");
         }
     }
@@ -246,7 +245,7 @@ std::vector<std::string> plain_names(lua_State* L, const TypedText& typed, bool 
     std::string_view before;
     for (const lua::Token& token : typed.tokens_before()) {
         const std::string name(token.text);
-        const bool known = std::any_of(names.begin(), names.end(), [&name](const std::string& n) {
+        const bool known = std::ranges::any_of(names, [&name](const std::string& n) {
             return n.starts_with(name) && (n.size() == name.size() || !lua::is_name(n));
         });
         if (token.kind == lua::TokenKind::name && before != "." && before != ":" && !known) {
@@ -349,10 +348,9 @@ std::string signature_hint(lua_State* L, std::string_view before) {
         }
         const std::vector<lua::Token> words = lua::tokens(part);
         const auto is_given = [&](const lua::Token& word) {
-            return std::find(typed.call()->given.begin(), typed.call()->given.end(), word.text) !=
-                   typed.call()->given.end();
+            return std::ranges::find(typed.call()->given, word.text) != typed.call()->given.end();
         };
-        if (!words.empty() && !std::any_of(words.begin(), words.end(), is_given)) {
+        if (!words.empty() && !std::ranges::any_of(words, is_given)) {
             hint.append(hint.empty() ? "" : ", ").append(part, std::min(part.find_first_not_of(' '), part.size()));
         }
         part.clear();
@@ -511,9 +509,9 @@ bool is_plain_string(const lua::Token& token) {
 }
 
 const lua::Member* member_of(const lua::Class& description, std::string_view name) {
-    const auto found =
-        std::find_if(description.members.begin(), description.members.end(),
-                     [name](const lua::Member& m) { return m.kind != lua::Kind::metamethod && m.name == name; });
+    const auto found = std::ranges::find_if(description.members, [name](const lua::Member& m) {
+        return m.kind != lua::Kind::metamethod && m.name == name;
+    });
     return found == description.members.end() ? nullptr : &*found;
 }
 
@@ -594,8 +592,7 @@ private:
 
 const help::Section* section_of(const lua::Class* description) {
     const auto all = help::sections();
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [description](const help::Section& s) { return s.description == description; });
+    const auto found = std::ranges::find(all, description, &help::Section::description);
     return found == all.end() ? nullptr : &*found;
 }
 
@@ -684,7 +681,7 @@ void safely(lua_State* L, Work work) {
 }
 
 bool is_simple(std::string_view text, bool unicode) {
-    return std::all_of(text.begin(), text.end(), [unicode](char c) {
+    return std::ranges::all_of(text, [unicode](char c) {
         const auto byte = static_cast<unsigned char>(c);
         return byte >= 0x20 && byte != 0x7F && (byte < 0x80 || unicode);
     });

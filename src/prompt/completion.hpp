@@ -12,6 +12,7 @@
 #include "help/signature.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/tokens.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::prompt {
 
@@ -43,27 +44,25 @@ struct OpenCall {
 };
 
 /// The text before the cursor, to which it refers.
-class TypedText {
+class TypedText : text::NotCopied {
 public:
     explicit TypedText(std::string_view before);
-    TypedText(const TypedText&) = delete;
-    TypedText& operator=(const TypedText&) = delete;
 
-    [[nodiscard]] Cursor cursor() const { return cursor_; }
+    Cursor cursor() const { return cursor_; }
     /// The beginning of a name or string at the cursor.
-    [[nodiscard]] std::string_view word() const { return word_; }
+    std::string_view word() const { return word_; }
     /// For Cursor::member: the tokens before the separator '.' or ':', and the separator.
-    [[nodiscard]] std::span<const lua::Token> owner() const { return owner_; }
-    [[nodiscard]] char separator() const { return separator_; }
-    [[nodiscard]] const std::optional<OpenCall>& call() const { return call_; }
-    [[nodiscard]] const std::vector<lua::Token>& tokens_before() const { return tokens_; }
+    std::span<const lua::Token> owner() const { return owner_; }
+    char separator() const { return separator_; }
+    const std::optional<OpenCall>& call() const { return call_; }
+    const std::vector<lua::Token>& tokens_before() const { return tokens_; }
 
 private:
     void find_cursor(std::string_view before);
     void find_call();
-    [[nodiscard]] std::span<const lua::Token> expression_before(std::size_t end) const;
-    [[nodiscard]] std::vector<std::size_t> open_brackets() const;
-    [[nodiscard]] std::optional<std::string_view> name_of_table(std::size_t bracket, std::size_t outer) const;
+    std::span<const lua::Token> expression_before(std::size_t end) const;
+    std::vector<std::size_t> open_brackets() const;
+    std::optional<std::string_view> name_of_table(std::size_t bracket, std::size_t outer) const;
 
     std::vector<lua::Token> tokens_;  // without the word at the cursor
     Cursor cursor_ = Cursor::nothing;

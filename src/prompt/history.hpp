@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "text/not_copied.hpp"
+
 namespace dinal::prompt {
 
 /// Loads the inputs of earlier sessions; `file` may be empty.
@@ -19,12 +21,10 @@ std::string add_to_history(const std::string& entry, const std::string& file);
 std::string suggested(std::string_view line);
 
 /// While this object lives, the up arrow first visits these lines of an unfinished chunk.
-class LinesAbove {
+class LinesAbove : text::NotCopied {
 public:
     explicit LinesAbove(std::string_view lines);
     ~LinesAbove();
-    LinesAbove(const LinesAbove&) = delete;
-    LinesAbove& operator=(const LinesAbove&) = delete;
 
 private:
     int count_ = 0;

@@ -83,7 +83,7 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
         hand_in.file = place->path();
         hand_in.name = text::displayable(place->path().lexically_relative(folder).string());
     }
-    std::sort(all.begin(), all.end(), [](const HandIn& a, const HandIn& b) { return a.file < b.file; });
+    std::ranges::sort(all, {}, &HandIn::file);
     return all;
 }
 
@@ -262,7 +262,7 @@ void add_paragraphs(std::string_view text, std::vector<std::string>& paragraphs)
             if (!letter && !words.empty() && words.back() != ' ') words += ' ';
         }
         const bool asks = text::trimmed(text.substr(0, end)).ends_with('?');
-        if (!asks && std::count(words.begin(), words.end(), ' ') >= fewest_words) paragraphs.push_back(words);
+        if (!asks && std::ranges::count(words, ' ') >= fewest_words) paragraphs.push_back(words);
         text.remove_prefix(std::min(end + 2, text.size()));
     }
 }
@@ -371,8 +371,8 @@ Rows summary_of(const std::vector<HandIn>& all, const std::vector<std::string>& 
             at_once += answer.right && answer.tries == 1 ? 1 : 0;
             if (!answer.said.empty()) ++hints[answer.said];
         }
-        const auto most = std::max_element(hints.begin(), hints.end(),
-                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        const auto most =
+            std::ranges::max_element(hints, [](const auto& a, const auto& b) { return a.second < b.second; });
         rows.push_back({question, fmt::format("{}", tried), fmt::format("{}", right), fmt::format("{}", at_once),
                         most == hints.end() ? "" : fmt::format("{}x {}", most->second, most->first)});
     }
@@ -560,7 +560,7 @@ std::optional<text::Error> add_sheets(const std::string& folder) {
     if (wrong || names.empty()) {
         return text::Error{"--sheets: there is no sheet in '" + folder + "'" + (wrong ? ": " + wrong.message() : "")};
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     std::vector<lab::LabSheet> sheets;
     for (const std::string& name : names) {
         auto text = files::read_file(name);

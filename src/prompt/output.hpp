@@ -4,6 +4,8 @@
 #include <string>
 #include <string_view>
 
+#include "text/not_copied.hpp"
+
 namespace dinal::prompt {
 
 /// Write errors are checked once, at the end of the program (main.cpp).
@@ -16,12 +18,10 @@ void flush_output();
 void say_error(std::string_view text);
 
 /// While this object lives, the lines of say_error() are appended to this text.
-class ErrorsInto {
+class ErrorsInto : text::NotCopied {
 public:
     explicit ErrorsInto(std::string& text);
     ~ErrorsInto();
-    ErrorsInto(const ErrorsInto&) = delete;
-    ErrorsInto& operator=(const ErrorsInto&) = delete;
 };
 
 }  // namespace dinal::prompt

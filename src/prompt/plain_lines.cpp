@@ -1,16 +1,17 @@
-#include "prompt/plain_lines.hpp"
+// Lines read without an editor, and the handling of Ctrl-C meanwhile.
+#include "prompt/line_editor.hpp"
 
 #include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
 #include "prompt/output.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -28,7 +29,7 @@ std::size_t numbered_prompt(std::string_view line) {
         return 0;
     }
     std::size_t end = head.size();
-    while (end < line.size() && std::isdigit(static_cast<unsigned char>(line[end])) != 0) {
+    while (end < line.size() && text::is_digit(line[end])) {
         ++end;
     }
     return end > head.size() && line.substr(end).starts_with(tail) ? end + tail.size() : 0;

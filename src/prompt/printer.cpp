@@ -79,7 +79,7 @@ std::string function_text(lua_State* L, int index, const terminal::Display& scre
     lua_Debug about{};
     lua_pushvalue(L, index);
     lua_getinfo(L, ">S", &about);
-    if (source && std::count(source->begin(), source->end(), '\n') < most_source_lines) {
+    if (source && std::ranges::count(*source, '\n') < most_source_lines) {
         return *source;
     }
     return fmt::format("function at {}:{}", about.short_src, about.linedefined);
@@ -151,14 +151,14 @@ public:
         lua_newtable(L_);
         keys_ = lua_gettop(L_);
         collect();
-        std::sort(order_.begin(), order_.end());
+        std::ranges::sort(order_);
     }
 
-    [[nodiscard]] std::size_t size() const { return listed_ + others_; }
+    std::size_t size() const { return listed_ + others_; }
     /// The number of items shown, which is limited.
-    [[nodiscard]] std::size_t shown() const { return listed_ + order_.size(); }
+    std::size_t shown() const { return listed_ + order_.size(); }
     /// Returns whether item i is one of 1, 2, ... n.
-    [[nodiscard]] bool in_list(std::size_t i) const { return i < listed_; }
+    bool in_list(std::size_t i) const { return i < listed_; }
 
     /// Pushes the key and the value of item i.
     void push(std::size_t i) const {
@@ -201,7 +201,7 @@ private:
         lua_rawseti(L_, keys_, place);
     }
 
-    [[nodiscard]] bool key_is_listed() const {
+    bool key_is_listed() const {
         const lua_Integer i = lua_isinteger(L_, -2) != 0 ? lua_tointeger(L_, -2) : 0;
         return i >= 1 && static_cast<std::size_t>(i) <= listed_;
     }
@@ -251,7 +251,7 @@ public:
     }
 
 private:
-    [[nodiscard]] std::string scalar(int index) const { return scalar_text(L_, index, Place::inside, screen_); }
+    std::string scalar(int index) const { return scalar_text(L_, index, Place::inside, screen_); }
 
     /// A value inside a table, in `room` columns if it can be cut.
     Piece inner(int index, std::size_t room) {
@@ -265,7 +265,7 @@ private:
             return item;
         }
         const void* address = lua_topointer(L_, index);
-        if (std::find(open_.begin(), open_.end(), address) != open_.end()) {
+        if (std::ranges::find(open_, address) != open_.end()) {
             return {"<cycle>"};
         }
         return open_.size() >= deepest ? Piece{"{...}"} : table_line(index, room);

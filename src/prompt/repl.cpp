@@ -1,4 +1,3 @@
-#include "prompt/repl.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -51,7 +50,7 @@ Aside aside(std::string_view line) {
     }
     const auto is = [word](std::string_view one) { return word == one; };
     constexpr std::array<std::string_view, 6> leaving = {"quit", "exit", "bye", "quit()", "exit()", ":q"};
-    if (std::any_of(leaving.begin(), leaving.end(), is) || word == ":quit") {
+    if (std::ranges::any_of(leaving, is) || word == ":quit") {
         return Aside::leaving;
     }
     const bool asks = word == "help" || word == "help()" || word == ":help" || word.front() == '?';
@@ -246,7 +245,7 @@ namespace {
 
 bool has(const std::string& text, std::string_view word) {
     const std::vector<lua::Token> all = lua::tokens(text);
-    return std::any_of(all.begin(), all.end(), [word](const lua::Token& token) {
+    return std::ranges::any_of(all, [word](const lua::Token& token) {
         return (token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::keyword || token.is("::")) &&
                token.text == word;
     });
@@ -287,7 +286,7 @@ void Record::add_statement(const std::string& statement) {
 }
 
 bool Record::writes(const std::string& file) const {
-    return std::find(written_.begin(), written_.end(), file) != written_.end();
+    return std::ranges::find(written_, file) != written_.end();
 }
 
 text::Expected<bool> Record::save(const std::string& file) {

@@ -29,7 +29,7 @@
 #include "prompt/marking.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
-#include "prompt/repl.hpp"
+#include "prompt/session.hpp"
 #include "prompt/user_files.hpp"
 #include "source/function_source.hpp"
 #include "text/version.hpp"
@@ -157,8 +157,7 @@ bool run_step(lua_State* L, const StartStep& step) {
 }
 
 bool run_steps(lua_State* L, const Arguments& arguments) {
-    return std::all_of(arguments.steps.begin(), arguments.steps.end(),
-                       [L](const StartStep& s) { return run_step(L, s); });
+    return std::ranges::all_of(arguments.steps, [L](const StartStep& s) { return run_step(L, s); });
 }
 
 /// Sets the global `arg`: the script at 0, its arguments from 1, words before it at negative indices.

@@ -1,4 +1,4 @@
-// The state of a session at the prompt, and the execution of input.
+// The state of a session at the prompt, the execution of input, and the prompt itself.
 #pragma once
 
 #include <string>
@@ -24,7 +24,7 @@ public:
     text::Expected<bool> save(const std::string& file);
 
     /// Returns whether the file belongs to this session: a script that loads itself would never end.
-    [[nodiscard]] bool writes(const std::string& file) const;
+    bool writes(const std::string& file) const;
 
 private:
     struct Entry {
@@ -32,8 +32,8 @@ private:
         Evaluated result;
     };
     [[nodiscard]] static bool sets_ans(const Entry& entry);
-    [[nodiscard]] std::string script() const;
-    [[nodiscard]] bool ans_is_used_after(std::size_t entry) const;
+    std::string script() const;
+    bool ans_is_used_after(std::size_t entry) const;
 
     std::vector<Entry> entries_;
     std::vector<std::string> written_;  // files of this session, which may be overwritten
@@ -56,5 +56,13 @@ bool run_text(Session& session, const std::string& text);
 /// Runs the function on the top of the stack, described by `chunk`. Returns false after an error, which has been
 /// reported.
 bool run_chunk(Session& session, const Chunk& chunk, const std::string& text);
+
+/// The first line of a session.
+std::string greeting();
+
+enum class Start { with_init_file, plain };
+
+/// Runs until the end of input. Returns false if Ctrl-C ended it, possible only without a terminal.
+bool run_prompt(lua_State* L, Start start);
 
 }  // namespace dinal::prompt

@@ -20,6 +20,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "terminal/progress.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::python {
 namespace {
@@ -64,7 +65,7 @@ void flush_python() {
 }
 
 /// Lets one thread at a time into Lua: a Python function called by Lua may let other Python threads run.
-class Turn {
+class Turn : text::NotCopied {
 public:
     Turn() {
         const unsigned long self = PyThread_get_thread_ident();
@@ -84,8 +85,6 @@ public:
         owner_thread = 0;
         left.notify_one();
     }
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
 
 private:
     /// Keeps the order of Lua's and Python's output.

@@ -6,7 +6,10 @@
 #include <exception>
 #include <utility>
 
+#include "lua/bind.hpp"
 #include "lua/lua_headers.hpp"
+#include "lua/vector.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::python {
 
@@ -33,12 +36,10 @@ py::object in_lua(const Body& body) {
 }
 
 /// While this object lives, other Python threads run during a long call of Lua. Ends as soon as Lua needs Python.
-class Unlocked {
+class Unlocked : text::NotCopied {
 public:
     Unlocked();
     ~Unlocked();
-    Unlocked(const Unlocked&) = delete;
-    Unlocked& operator=(const Unlocked&) = delete;
 };
 /// Call from Lua before touching Python. Keeps the lock until the Lua call ends: taking it for each call of an M would
 /// be slow if other threads want it.
@@ -50,8 +51,6 @@ struct Held {
     explicit Held(py::object own) : value(std::move(own)) {}
     Held(Held&&) noexcept = default;
     Held& operator=(Held&&) = delete;
-    Held(const Held&) = delete;
-    Held& operator=(const Held&) = delete;
     ~Held() {
         if (value) need_python();
     }
@@ -59,12 +58,10 @@ struct Held {
 
 /// Guards a call of Python. At its end the interpreter terminates other threads by pthread_exit, which unwinds the
 /// stack; Lua's handlers would abort. So the thread waits here until the process ends.
-class EndsHere {
+class EndsHere : text::NotCopied {
 public:
     EndsHere() = default;
     ~EndsHere();
-    EndsHere(const EndsHere&) = delete;
-    EndsHere& operator=(const EndsHere&) = delete;
     void passed() { passed_ = true; }
 
 private:
@@ -73,12 +70,10 @@ private:
 };
 
 /// While this object lives, calls from Python run on this Lua thread, perhaps a coroutine.
-class RunningOn {
+class RunningOn : text::NotCopied {
 public:
     explicit RunningOn(lua_State* L);
     ~RunningOn();
-    RunningOn(const RunningOn&) = delete;
-    RunningOn& operator=(const RunningOn&) = delete;
 
 private:
     lua_State* before_;
@@ -89,5 +84,20 @@ private:
 
 /// Releases a registry value at the next call, as this may be any thread.
 void release(int reference);
+
+/// The type of Lua objects without a Python equivalent. Python defines a subclass for each class of Lua.
+PyTypeObject* reference_type();
+
+/// An array on the vector's memory, which it keeps alive.
+py::object numbers_to_python(const lua::Vector& vector);
+
+/// The value at `index`; a vector becomes such an array.
+py::object to_python(lua_State* L, int index);
+
+/// Pushes the value. Throws Python's exceptions.
+void to_lua(lua_State* L, py::handle value, int depth = 0);
+
+/// Pushes a table with list entries and fields.
+void table_to_lua(lua_State* L, const py::tuple& list, const py::dict& fields, int depth = 0);
 
 }  // namespace dinal::python

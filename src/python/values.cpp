@@ -1,4 +1,4 @@
-#include "python/values.hpp"
+#include "python/state.hpp"
 
 #include <pybind11/numpy.h>
 
@@ -13,6 +13,7 @@
 #include "lua/foreign.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/vector.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::python {
 namespace {
@@ -85,7 +86,7 @@ void fill_record(lua_State* L, int index, py::object& record, Seen& seen, int de
                           is_number ? lua_tonumber(L, -2) : 0, is_name ? lua::text_at(L, -2) : std::string_view(),
                           std::move(key), value_to_python(L, -1, seen, depth)});
     }
-    std::stable_sort(others.begin(), others.end(), [](const Field& a, const Field& b) {
+    std::ranges::stable_sort(others, [](const Field& a, const Field& b) {
         return std::tie(a.rank, a.number, a.name) < std::tie(b.rank, b.number, b.name);
     });
     for (const Field& field : others) record[field.key] = field.value;
@@ -150,7 +151,7 @@ py::object value_to_python(lua_State* L, int index, Seen& seen, int depth) {
 // ---- Python functions in Lua
 
 /// The arguments of a call; the place before them is for Python's use.
-struct Arguments {
+struct Arguments : text::NotCopied {
     static constexpr int most = 16;
     std::array<PyObject*, most + 1> places;  // uninitialised, because a call of M must be fast
     int count = 0;
@@ -159,8 +160,6 @@ struct Arguments {
     ~Arguments() {
         while (count > 0) Py_DECREF(places[static_cast<std::size_t>(count--)]);
     }
-    Arguments(const Arguments&) = delete;
-    Arguments& operator=(const Arguments&) = delete;
     void add(py::object value) { places[static_cast<std::size_t>(++count)] = value.release().ptr(); }
 };
 

@@ -10,7 +10,6 @@
 #include <string_view>
 #include <unordered_map>
 #include <unordered_set>
-#include <utility>
 #include <vector>
 
 #include "lua/lua_headers.hpp"
@@ -57,7 +56,7 @@ private:
     bool object(int index);
     bool fail(int index, std::string_view cure = "");
     void remember(const void* identity);
-    [[nodiscard]] std::string path() const;
+    std::string path() const;
 
     using Function = std::shared_ptr<model::terms::UserFunction>;
     Function user_function(const Function& function);

@@ -7,7 +7,7 @@
 #include "lua/foreign.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
-#include "model/joint_options.hpp"
+#include "model/functions.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
 #include "model/springs/user_spring.hpp"

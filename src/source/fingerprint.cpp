@@ -107,7 +107,7 @@ void Fingerprint::libraries() {
         lua_settop(L_, library - 1);
     }
     lua_settop(L_, top);
-    std::sort(additions.begin(), additions.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::ranges::sort(additions, [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const auto& [name, own] : additions) {
         add(name);
         join(reference(own));
@@ -207,7 +207,7 @@ void Fingerprint::table(int index) {
         }
         lua_pop(L_, 1);
     }
-    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    std::ranges::sort(entries, [](const Entry& a, const Entry& b) {
         return std::tie(a.key_sketch, a.value_sketch) < std::tie(b.key_sketch, b.value_sketch);
     });
     join(sum);

@@ -27,7 +27,7 @@ public:
     /// regardless of the order of fields, and shared or cyclic references by identity.
     void add_value(int index);
 
-    [[nodiscard]] std::uint64_t number() const { return number_; }
+    std::uint64_t number() const { return number_; }
 
 private:
     /// A visited value: a complete digest, or a table, function or object to be visited later.

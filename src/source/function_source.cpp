@@ -32,7 +32,7 @@ struct Shape {
         }
         code = lua::dumped_function(L, index, true);
     }
-    [[nodiscard]] bool like(const Shape& other) const {
+    bool like(const Shape& other) const {
         return about.linedefined == other.about.linedefined && about.lastlinedefined == other.about.lastlinedefined &&
                about.nparams == other.about.nparams && about.isvararg == other.about.isvararg &&
                upvalues == other.upvalues;
@@ -79,7 +79,7 @@ struct Found {
     std::vector<std::string> by_shape;
     std::vector<std::string> by_code;
 
-    [[nodiscard]] std::optional<std::string> only() const {
+    std::optional<std::string> only() const {
         const auto& best = by_code.empty() ? by_shape : by_code;
         return best.size() == 1 ? std::optional(best.front()) : std::nullopt;
     }
@@ -91,7 +91,7 @@ void find_in(lua_State* L, std::string_view text, const Shape& wanted, Found& fo
         const Likeness like = source.empty() ? Likeness::none : likeness(L, source, wanted);
         if (like != Likeness::none) {
             auto& list = like == Likeness::code ? found.by_code : found.by_shape;
-            if (std::find(list.begin(), list.end(), source) == list.end()) {
+            if (std::ranges::find(list, source) == list.end()) {
                 list.push_back(source);
             }
         }

@@ -11,20 +11,14 @@
 #include "source/value_text.hpp"
 #include "text/characters.hpp"
 #include "text/version.hpp"
+#include "text/words.hpp"
 
 namespace dinal::source {
 
 namespace {
 
 void append_lines(std::vector<std::string>& lines, std::string_view text) {
-    for (;;) {
-        const std::size_t end = text.find('\n');
-        lines.emplace_back(text.substr(0, end));
-        if (end == std::string_view::npos) {
-            return;
-        }
-        text.remove_prefix(end + 1);
-    }
+    for (const std::string_view line : text::split(text, '\n')) lines.emplace_back(line);
 }
 
 /// The text of an excitation; if it is only a function, the author's text.
@@ -64,8 +58,8 @@ void append_states_and_events(std::vector<std::string>& lines, lua_State* L, con
         std::string text;
         for (const model::WantedEvent& wanted : drive.events) {
             text += fmt::format("{} {{ when = {}", text.empty() ? "" : ",", function_text(L, *wanted.when, &writer));
-            if (wanted.direction != model::Crossing::both) {
-                text += fmt::format(", direction = \"{}\"", wanted.direction == model::Crossing::up ? "up" : "down");
+            if (wanted.direction != model::Direction::both) {
+                text += fmt::format(", direction = \"{}\"", wanted.direction == model::Direction::up ? "up" : "down");
             }
             text += wanted.stop ? ", stop = true" : "";
             text += wanted.name.empty() ? "" : ", name = " + text::quoted(wanted.name);
@@ -104,7 +98,7 @@ void append_acting(std::vector<std::string>& lines, lua_State* L, const char* na
 }
 
 bool acts(const std::vector<model::Excitation>& acting) {
-    return std::any_of(acting.begin(), acting.end(), [](const auto& one) { return !one.components().empty(); });
+    return std::ranges::any_of(acting, [](const auto& one) { return !one.components().empty(); });
 }
 
 /// The lines that construct a system and its drive. L may be null if there are no user functions.

@@ -56,7 +56,7 @@ std::string ValueText::expression(int index) {
 
 std::string ValueText::table(int index) {
     const void* identity = lua_topointer(L_, index);
-    if (std::find(open_.begin(), open_.end(), identity) != open_.end() || open_.size() > deepest) {
+    if (std::ranges::find(open_, identity) != open_.end() || open_.size() > deepest) {
         return nothing("a table that contains itself");
     }
     const int top = lua_gettop(L_);
@@ -85,7 +85,7 @@ std::string ValueText::table(int index) {
         }
         lua_pop(L_, 1);
     }
-    std::sort(named.begin(), named.end());  // the same text in each process
+    std::ranges::sort(named);  // the same text in each process
     for (const std::string& entry : named) text += (text.empty() ? "" : ", ") + entry;
     lua_settop(L_, top);  // the loop may end early
     open_.pop_back();
@@ -126,7 +126,7 @@ std::optional<std::string> ValueText::aside(const std::vector<double>& numbers) 
 
 std::string ValueText::function(int index) {
     const void* identity = lua_topointer(L_, index);
-    if (std::find(open_.begin(), open_.end(), identity) != open_.end()) {
+    if (std::ranges::find(open_, identity) != open_.end()) {
         return nothing("a function that refers to itself in a roundabout way");
     }
     if (open_.size() > deepest) {
@@ -183,7 +183,7 @@ void ValueText::note_globals(int function_index, std::string_view source) {
 }
 
 void ValueText::note_global(int environment, const std::string& name) {
-    if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+    if (std::ranges::find(names_, name) != names_.end()) {
         return;
     }
     lua::push_standard_globals(L_);
@@ -196,7 +196,7 @@ void ValueText::note_global(int environment, const std::string& name) {
     lua_pop(L_, 1);
     if (users) {
         names_.push_back(name);
-        const bool itself = std::find(open_.begin(), open_.end(), lua_topointer(L_, -1)) != open_.end();
+        const bool itself = std::ranges::find(open_, lua_topointer(L_, -1)) != open_.end();
         // function M(t) return M_old(t) end needs M_old first; a function that calls itself already exists under its
         // name, if it has one.
         if (itself && aside_) nothing("the global function " + name + ", which calls itself: make it local");

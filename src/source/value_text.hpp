@@ -32,9 +32,9 @@ public:
     std::optional<std::string> aside(const std::vector<double>& numbers);
 
     /// Lines such as "w = 3" that must precede the expressions.
-    [[nodiscard]] const std::vector<std::string>& globals() const { return globals_; }
+    const std::vector<std::string>& globals() const { return globals_; }
     /// Comments on values that could not be written.
-    [[nodiscard]] const std::vector<std::string>& remarks() const { return remarks_; }
+    const std::vector<std::string>& remarks() const { return remarks_; }
 
 private:
     std::string table(int index);

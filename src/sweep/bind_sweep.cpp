@@ -15,12 +15,10 @@
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
-#include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
-#include "sweep/sweep_options.hpp"
 #include "sweep/sweep_run.hpp"
 #include "text/option.hpp"
 
@@ -331,7 +329,7 @@ constexpr double accuracy = 1.5e-8;  // fraction of the range: closer to the min
 struct Range {
     std::string name;
     double low = 0, high = 0;
-    [[nodiscard]] double at(double part) const { return low + (high - low) * part; }
+    double at(double part) const { return low + (high - low) * part; }
 };
 
 /// A place as fractions of the ranges, and its value.
@@ -371,7 +369,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
     }
     constexpr int most = 400;
     for (int i = 0; i < most; ++i) {
-        std::sort(corner.begin(), corner.end(), [](const Spot& a, const Spot& b) { return a.value < b.value; });
+        std::ranges::sort(corner, {}, &Spot::value);
         double widest = 0;
         for (const Spot& other : corner) {
             for (std::size_t k = 0; k < 2; ++k) widest = std::max(widest, std::fabs(other.at[k] - corner[0].at[k]));
@@ -404,8 +402,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
             corner[c] = look({(corner[0].at[0] + corner[c].at[0]) / 2, (corner[0].at[1] + corner[c].at[1]) / 2});
         }
     }
-    return *std::min_element(corner.begin(), corner.end(),
-                             [](const Spot& a, const Spot& b) { return a.value < b.value; });
+    return *std::ranges::min_element(corner, {}, &Spot::value);
 }
 
 Spot least(const Cost& cost, std::size_t parameters) {

@@ -134,7 +134,7 @@ struct PointLoop {
 
     /// Takes many points at once while many are left, as they may be short, and few at the end, so that no worker
     /// waits.
-    [[nodiscard]] bool take(std::size_t& first, std::size_t& last) const {
+    bool take(std::size_t& first, std::size_t& last) const {
         constexpr std::size_t most = 64;
         const std::size_t count = work.points.size();
         const std::size_t left = count - std::min(count, work.next.load(std::memory_order_relaxed));
@@ -145,7 +145,7 @@ struct PointLoop {
     }
 
     /// Computes a point; returns false if it was stopped.
-    [[nodiscard]] bool point(std::size_t number) const {
+    bool point(std::size_t number) const {
         lua_settop(L, columns);
         lua_pushvalue(L, seed);
         lua_pushinteger(L, static_cast<lua_Integer>(number) + 1);
@@ -183,7 +183,7 @@ struct PointLoop {
     }
 
     /// Ends a task; returns whether it was given up, which is then its result.
-    [[nodiscard]] bool is_given_up(std::size_t place) const {
+    bool is_given_up(std::size_t place) const {
         const bool late = watch.has_given_up();
         ++watch.task;
         watch.since = std::numeric_limits<double>::infinity();
@@ -194,7 +194,7 @@ struct PointLoop {
     }
 
     /// Returns the error in the result on the top of the stack. Afterwards each of its names has a column.
-    [[nodiscard]] std::string complaint() const {
+    std::string complaint() const {
         if (!lua_istable(L, -1)) {
             return fmt::format("run must return a table of named numbers such as {{ A = s.amplitude }}, got {}",
                                lua::describe(L, -1));
@@ -220,7 +220,7 @@ struct PointLoop {
         return "";
     }
 
-    [[nodiscard]] std::string new_column(std::string_view name) const {
+    std::string new_column(std::string_view name) const {
         for (const DataColumn& parameter : work.grid.parameters()) {
             if (parameter.name == name) {
                 return fmt::format("run returned '{}', which is the name of a parameter: give it another", name);
@@ -469,7 +469,7 @@ public:
 
     // For Python's executors, which compute the points. Each of these calls may come from another Lua thread.
 
-    [[nodiscard]] std::vector<double> left() const {
+    std::vector<double> left() const {
         std::vector<double> firsts;
         for (std::size_t chunk = 0; chunk < (journal_ && journal_->result() ? 0 : results_->chunks()); ++chunk) {
             if (!results_->is_complete(chunk)) firsts.push_back(static_cast<double>(chunk * results_->chunk_size()));
@@ -515,7 +515,7 @@ private:
     }
 
     /// The point of the first result.
-    [[nodiscard]] std::size_t first() const { return task_.points ? task_.points->first : 0; }
+    std::size_t first() const { return task_.points ? task_.points->first : 0; }
 
     void work() {
         SweepWork work{.grid = task_.grid,
@@ -541,7 +541,7 @@ private:
     }
 
     /// Adds a heading that reports failed points, because users rarely check a column that should be empty.
-    [[nodiscard]] Data with_heading(std::vector<DataColumn> columns) const {
+    Data with_heading(std::vector<DataColumn> columns) const {
         Data data = task_.form;
         data.columns = std::move(columns);
         if (const Failures failed = failures_in(data, task_.grid); failed.count > 0) {
@@ -552,7 +552,7 @@ private:
     }
 
     /// The data of the finished points.
-    [[nodiscard]] Data finished_data() const {
+    Data finished_data() const {
         const std::vector<std::size_t> points = results_->done_points();
         if (task_.make_columns) return with_heading(task_.make_columns(*results_, points));
         std::vector<std::size_t> places = points;
@@ -875,7 +875,7 @@ std::optional<std::vector<std::string>> SweepResults::words(const std::vector<do
         const std::uint64_t bits = std::bit_cast<std::uint64_t>(x), of_word = bits & ~nan_of_words;
         return (bits & nan_of_words) == nan_of_words && of_word <= words_.size() ? of_word : 0;
     };
-    if (std::none_of(numbers.begin(), numbers.end(), place)) return std::nullopt;
+    if (std::ranges::none_of(numbers, place)) return std::nullopt;
     std::vector<std::string> words;
     words.reserve(numbers.size());
     for (const double x : numbers) {
@@ -914,7 +914,7 @@ void SweepResults::fail(std::size_t point, std::string message) {
 }
 
 std::size_t SweepResults::done() const {
-    return static_cast<std::size_t>(std::count(done_.begin(), done_.end(), 1));
+    return static_cast<std::size_t>(std::ranges::count(done_, 1));
 }
 
 const double* SweepResults::find(std::string_view name) const {

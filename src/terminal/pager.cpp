@@ -14,6 +14,7 @@
 
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::terminal {
 
@@ -24,7 +25,7 @@ void write_out(std::string_view text) {
 }
 
 /// Reads single keys without echo during its lifetime; Ctrl-C is read as a key, too.
-class Keys {
+class Keys : text::NotCopied {
 public:
     Keys() : good_(::tcgetattr(STDIN_FILENO, &before_) == 0) {
         termios now = before_;
@@ -36,11 +37,9 @@ public:
     ~Keys() {
         if (good_) ::tcsetattr(STDIN_FILENO, TCSADRAIN, &before_);
     }
-    Keys(const Keys&) = delete;
-    Keys& operator=(const Keys&) = delete;
 
     /// Returns '\0' at the end of the input or after a signal.
-    [[nodiscard]] char read() const {
+    char read() const {
         char key = '\0';
         return good_ && ::read(STDIN_FILENO, &key, 1) == 1 ? key : '\0';
     }

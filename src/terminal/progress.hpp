@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <string>
 
+#include "text/not_copied.hpp"
+
 namespace dinal::terminal {
 
 // The progress of a computation as one line that fits the window.
@@ -29,15 +31,13 @@ std::string progress_text(const ProgressFacts& facts, std::size_t columns, Lette
 /// "8 s", "2:05", "1:02:05"
 std::string duration_text(double seconds);
 
-class Progress {
+class Progress : text::NotCopied {
 public:
     /// A loop of `total` steps; infinity if their number is unknown.
     static Progress of_steps(std::string label, double total) { return {std::move(label), 0, total, Kind::steps}; }
     /// A run from one time to another.
     static Progress of_time(double start, double end) { return {"", start, end, Kind::time}; }
     ~Progress();
-    Progress(const Progress&) = delete;
-    Progress& operator=(const Progress&) = delete;
 
     /// Reports the number of steps done, or the time reached. Cheap: call it often.
     void advance(double reached);

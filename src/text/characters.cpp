@@ -7,6 +7,8 @@
 #include <array>
 #include <utility>
 
+#include "text/words.hpp"
+
 namespace dinal::text {
 namespace {
 
@@ -172,9 +174,8 @@ std::string in_ascii(std::string_view text) {
         if (next.code < 0x80) {
             result += static_cast<char>(next.code);
         } else if (next.columns > 0) {
-            const auto* const found = std::find_if(spelled.begin(), spelled.end(), [&next](const auto& pair) {
-                return pair.first == static_cast<char32_t>(next.code);
-            });
+            const auto* const found = std::ranges::find_if(
+                spelled, [&next](const auto& pair) { return pair.first == static_cast<char32_t>(next.code); });
             result += found != spelled.end() ? found->second : "?";
         }
     }
@@ -199,17 +200,12 @@ std::string quoted(std::string_view text, std::size_t limit, bool unicode) {
 }
 
 std::string wrapped(std::string_view text, std::size_t width) {
-    std::string result;
-    for (;;) {
-        const std::string_view line = text.substr(0, text.find('\n'));
+    std::vector<std::string> lines;
+    for (const std::string_view line : split(text, '\n')) {
         const bool laid_out = line.starts_with(' ') || columns(line) <= width;
-        result += laid_out ? std::string(line) : line_in_rows(line, width);
-        if (line.size() == text.size()) {
-            return result;
-        }
-        result += '\n';
-        text.remove_prefix(line.size() + 1);
+        lines.push_back(laid_out ? std::string(line) : line_in_rows(line, width));
     }
+    return fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 std::string indented(std::string text, std::size_t blanks) {

@@ -18,7 +18,7 @@ struct Error {
     std::string cure = {};     ///< appended to the sentence: "; did you mean 'theta0'?"
     std::string instead = {};  ///< appended if the script offers no better hint: "; it has t, theta"
 
-    [[nodiscard]] std::string message() const { return sentence + cure; }
+    std::string message() const { return sentence + cure; }
 };
 
 /// Returns the error with the call in front: "system: I = -1 must be positive".

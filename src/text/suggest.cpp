@@ -89,7 +89,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 69> synonyms
 }};
 
 bool is_synonym(std::string_view small_word, std::string_view name) {
-    return std::find(synonyms.begin(), synonyms.end(), std::pair(small_word, name)) != synonyms.end();
+    return std::ranges::find(synonyms, std::pair(small_word, name)) != synonyms.end();
 }
 
 /// Insertions, deletions, substitutions and swaps of neighbours that turn a into b (optimal string alignment).
@@ -116,7 +116,7 @@ int edits(std::string_view a, std::string_view b) {
 }
 
 bool same_letters(std::string_view a, std::string_view b) {
-    return std::is_permutation(a.begin(), a.end(), b.begin(), b.end());
+    return std::ranges::is_permutation(a, b);
 }
 
 /// Returns the allowed number of slips. A word of two letters must at least begin as the name does: w0 is not T0.
@@ -168,7 +168,7 @@ std::vector<std::string> suggestions(std::string_view word, const KnownNames& kn
             fewest = count;
             best.clear();
         }
-        if (count == fewest && count < far && std::find(best.begin(), best.end(), name) == best.end()) {
+        if (count == fewest && count < far && std::ranges::find(best, name) == best.end()) {
             best.emplace_back(name);
         }
     }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,7 +24,7 @@ constexpr bool is_name_char(char c) {
 
 inline std::string lower(std::string_view text) {
     std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(), [](char c) { return lower(c); });
+    std::ranges::transform(result, result.begin(), [](char c) { return lower(c); });
     return result;
 }
 
@@ -51,5 +53,23 @@ inline std::string_view trimmed(std::string_view text, std::string_view begin, s
 inline std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r\n") {
     return trimmed(text, blanks, blanks);
 }
+
+/// A text assembled at compile time, for tables of constants. Holds at most `room` - 1 characters; a longer text does
+/// not compile.
+template <std::size_t room>
+class FixedText {
+public:
+    constexpr FixedText(std::initializer_list<std::string_view> parts) {
+        std::size_t n = 0;
+        for (const std::string_view part : parts) {
+            for (const char c : part) text_[n++] = c;
+        }
+        text_[n] = '\0';
+    }
+    constexpr const char* c_str() const { return text_; }
+
+private:
+    char text_[room] = {};
+};
 
 }  // namespace dinal::text

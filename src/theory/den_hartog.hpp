@@ -8,7 +8,7 @@
 
 #include <optional>
 
-#include "theory/theory_modes.hpp"
+#include "theory/theory_free.hpp"
 
 namespace dinal::theory {
 
@@ -31,22 +31,22 @@ public:
     /// The steady motion without stops for gamma = Rd/M0 and Re/M0 >= gamma; none if it has stops. At r = 1 without
     /// viscous damping it grows without bound: infinite amplitude, with the lag pi/2 of a growing motion.
     // NOTE: at r = 1/2, 1/4, ... with zeta = 0 it is the symmetric one of a family of steady motions.
-    [[nodiscard]] std::optional<SlidingMotion> motion(double friction_ratio, double breakaway_ratio) const;
+    std::optional<SlidingMotion> motion(double friction_ratio, double breakaway_ratio) const;
 
     /// The motion under the unverified assumption that it has no stops; none if no such motion is possible.
-    [[nodiscard]] std::optional<SlidingMotion> without_stops(double friction_ratio) const;
+    std::optional<SlidingMotion> without_stops(double friction_ratio) const;
 
     /// The greatest gamma without stops, for Re = `breakaway_factor` Rd.
-    [[nodiscard]] double stop_boundary(double breakaway_factor) const;
+    double stop_boundary(double breakaway_factor) const;
 
 private:
-    [[nodiscard]] double velocity_excess(double x) const;
-    [[nodiscard]] double greatest_excess() const;
-    [[nodiscard]] double refined_peak(double from, double to) const;
-    [[nodiscard]] double excess_at_turn(double friction, double breakaway) const;
-    [[nodiscard]] bool grows() const;
-    [[nodiscard]] std::optional<double> swing_beyond(double least, double friction_ratio) const;
-    [[nodiscard]] SlidingMotion sliding(double friction_ratio, double swing) const;
+    double velocity_excess(double x) const;
+    double greatest_excess() const;
+    double refined_peak(double from, double to) const;
+    double excess_at_turn(double friction, double breakaway) const;
+    bool grows() const;
+    std::optional<double> swing_beyond(double least, double friction_ratio) const;
+    SlidingMotion sliding(double friction_ratio, double swing) const;
 
     double r_;
     Modes modes_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -24,7 +25,34 @@ double regime_zeta(const model::Oscillator& system) {
     return system.regime() == model::Regime::critical ? 1 : system.damping_ratio();
 }
 
+// Above this k the two exponentials are computed separately; below it, as sum and difference, which have a limit.
+constexpr double apart = 0.5;
+
 }  // namespace
+
+Modes::Modes(double zeta) : zeta_(zeta), rate_(std::sqrt(std::fabs(1 - zeta)) * std::sqrt(1 + zeta)) {}
+
+double Modes::damped_cosine(double x) const {
+    if (swings()) return std::exp(-zeta_ * x) * std::cos(rate_ * x);
+    return (std::exp(-slow_root() * x) + std::exp(-fast_root() * x)) / 2;
+}
+
+double Modes::pushed(double x) const {
+    if (rate_ == 0) return x * std::exp(-x);
+    if (swings()) return std::exp(-zeta_ * x) * std::sin(rate_ * x) / rate_;
+    return -std::exp(-slow_root() * x) * std::expm1(-2 * rate_ * x) / (2 * rate_);
+}
+
+Modes::Answers Modes::after(double x) const {
+    const double g = pushed(x);
+    if (swings() || rate_ < apart) {
+        const double cosine = damped_cosine(x);
+        return {cosine + zeta_ * g, g, cosine - zeta_ * g};
+    }
+    const double slow = std::exp(-slow_root() * x), fast = std::exp(-fast_root() * x), between = 2 * rate_;
+    return {(fast_root() * slow - slow_root() * fast) / between, g,
+            (fast_root() * fast - slow_root() * slow) / between};
+}
 
 model::State free_response(double natural_frequency, double zeta, const model::State& initial, double t) {
     const Motion2 y =
@@ -140,6 +168,100 @@ double FreeMotion::extremes() const {
 Extreme FreeMotion::extreme(double n) const {
     if (n == 0) return first_;
     return {first_.t + n * half_cycle(), HalfCycles(modes_.zeta(), shift_).after(n, first_.theta)};
+}
+
+namespace {
+
+/// The most rows computed by rotation from the previous row, for even times; limits the rounding error.
+constexpr int turned_on = 32;
+
+class DecayRows {
+public:
+    DecayRows(const model::Oscillator& system, std::span<const double> times, std::span<double> theta)
+        : decay_(system.damping_ratio() * system.natural_frequency()),
+          omega_(Modes(system.damping_ratio()).rate() * system.natural_frequency()),
+          times_(times),
+          theta_(theta) {
+        if (times.size() < 2) return;
+        spacing_ = times[1] - times[0];
+        constexpr double roundings = 4;
+        slack_ =
+            roundings * std::numeric_limits<double>::epsilon() * std::max(std::fabs(times[0]), std::fabs(times.back()));
+        step_ = turned({1, 0}, spacing_);
+    }
+
+    bool done() const { return next_ >= times_.size(); }
+    /// The time of the next row relative to the first.
+    double next_time() const { return times_[next_] - times_[0]; }
+
+    /// Computes the rows before `until` as a swing about `centre` from this state at the time `from`.
+    void swing(double centre, double from, const model::State& start, double until) {
+        const double y = start.theta - centre;
+        const std::complex<double> begin{y, -(start.velocity + decay_ * y) / omega_};
+        std::complex<double> now;
+        for (int since = turned_on; !done() && next_time() < until; ++since) {
+            const bool even =
+                since < turned_on && next_ > 0 && std::fabs(times_[next_] - times_[next_ - 1] - spacing_) <= slack_;
+            if (even) {
+                now = {now.real() * step_.real() - now.imag() * step_.imag(),
+                       now.real() * step_.imag() + now.imag() * step_.real()};
+            } else {
+                now = turned(begin, next_time() - from);
+                since = 0;
+            }
+            put(centre + now.real());
+        }
+    }
+    void rest(double theta) {
+        while (!done()) put(theta);
+    }
+
+private:
+    void put(double theta) { theta_[next_++] = theta; }
+    std::complex<double> turned(std::complex<double> z, double tau) const {
+        const double kept = std::exp(-decay_ * tau), c = kept * std::cos(omega_ * tau),
+                     s = kept * std::sin(omega_ * tau);
+        return {z.real() * c - z.imag() * s, z.real() * s + z.imag() * c};
+    }
+
+    double decay_, omega_;
+    std::span<const double> times_;
+    std::span<double> theta_;
+    double spacing_ = 0, slack_ = 0;
+    std::complex<double> step_ = 1;
+    std::size_t next_ = 0;
+};
+
+}  // namespace
+
+void free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
+                std::optional<double> rests_at, std::span<double> theta) {
+    const FreeMotion motion(system, initial);
+    const double zeta = system.damping_ratio();
+    constexpr double slow = 1e-3;  // relative to w0: slower swings need other forms than sine and cosine
+    if (!Modes(zeta).swings() || Modes(zeta).rate() < slow) {
+        for (std::size_t i = 0; i < times.size(); ++i) theta[i] = motion.at(times[i] - times[0]).theta;
+        return;
+    }
+    const double shift = system.kinetic_friction() / system.stiffness();
+    DecayRows rows(system, times, theta);
+    const Extreme first = motion.extreme(0);
+    if (initial.velocity != 0) rows.swing(initial.velocity > 0 ? -shift : shift, 0, initial, first.t);
+    const double until_rest = rests_at.value_or(motion.extremes() - 1);
+    const double half = pi / (Modes(zeta).rate() * system.natural_frequency());
+    while (!rows.done()) {
+        const double n = std::max(0.0, std::floor((rows.next_time() - first.t) / half));
+        if (n >= until_rest) {
+            rows.rest(motion.extreme(until_rest).theta);
+            break;
+        }
+        const Extreme last = motion.extreme(n);
+        const double end = first.t + (n + 1) * half;
+        const bool from_below = (first.theta < 0) != (std::fmod(n, 2) != 0);
+        // A row that rounding places before its swing still belongs to it.
+        rows.swing(from_below ? -shift : shift, last.t, {last.theta, 0},
+                   std::max(end, std::nextafter(rows.next_time(), 1e300)));
+    }
 }
 
 double logarithmic_decrement(double zeta) {

@@ -2,11 +2,51 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "model/oscillator.hpp"
-#include "theory/theory_modes.hpp"
 
 namespace dinal::theory {
+
+/// The free motions of y'' + 2 zeta y' + y = 0 for any zeta >= 0, without loss of digits between the regimes.
+/// Time is x = w0 t. With q = sqrt(1 - zeta^2), or k = sqrt(zeta^2 - 1) when overdamped, the fundamental solutions are
+/// built from e^(-zeta x) cos qx and e^(-zeta x) (sin qx)/q, whose limits q -> 0 are e^(-x) and x e^(-x).
+class Modes {
+public:
+    explicit Modes(double zeta);
+
+    double zeta() const { return zeta_; }
+    bool swings() const { return zeta_ < 1; }
+    /// q, or k when overdamped.
+    double rate() const { return rate_; }
+    /// The decay rates of an overdamped motion: 1/(zeta + k), and zeta + k.
+    double slow_root() const { return 1 / fast_root(); }
+    double fast_root() const { return swings() ? 1 : zeta_ + rate_; }
+
+    /// e^(-zeta x) cos qx.
+    double damped_cosine(double x) const;
+    /// y(0) = 0, y'(0) = 1: e^(-zeta x) (sin qx)/q.
+    double pushed(double x) const;
+    struct Answers {
+        double released;                 ///< y(0) = 1, y'(0) = 0; its velocity is -pushed
+        double pushed, pushed_velocity;  ///< y(0) = 0, y'(0) = 1
+    };
+    Answers after(double x) const;
+
+private:
+    double zeta_;
+    double rate_;
+};
+
+/// An angle (or y) and its derivative at x = w0 t, from the values at x = 0.
+struct Motion2 {
+    double y = 0;
+    double dy = 0;  ///< derivative with respect to x
+};
+inline Motion2 free_motion(const Modes& modes, const Motion2& start, double x) {
+    const auto [released, pushed, pushed_velocity] = modes.after(x);
+    return {start.y * released + start.dy * pushed, start.dy * pushed_velocity - start.y * pushed};
+}
 
 /// Free motion without dry friction at the time t (any sign), from `initial` at t = 0.
 model::State free_response(double natural_frequency, double zeta, const model::State& initial, double t);
@@ -18,13 +58,13 @@ public:
     /// Requires 0 <= zeta < 1 and x_f >= 0.
     HalfCycles(double zeta, double friction_shift);
     /// The extreme n half cycles after X, provided that the mass does not come to rest before.
-    [[nodiscard]] double after(double n, double X) const;
+    double after(double n, double X) const;
     /// The number of half cycles after X until first |angle| <= dead_zone, which is at least x_f; infinity if never.
     /// Slightly off near 2^53.
-    [[nodiscard]] double until_within(double dead_zone, double X) const;
+    double until_within(double dead_zone, double X) const;
 
 private:
-    [[nodiscard]] double shrunk(double n, double size) const;
+    double shrunk(double n, double size) const;
 
     double logarithm_;  // -ln e
     double shift_;
@@ -43,22 +83,22 @@ public:
     FreeMotion(const model::Oscillator& system, const model::State& initial);
 
     /// Requires t >= 0.
-    [[nodiscard]] model::State at(double t) const;
+    model::State at(double t) const;
     /// The time at which it stops for good; infinity if it only approaches a place, or never settles.
-    [[nodiscard]] double time_to_rest() const;
+    double time_to_rest() const;
     /// The place where it stops or which it approaches; none if it swings for ever.
-    [[nodiscard]] std::optional<double> rest_position() const;
+    std::optional<double> rest_position() const;
     /// The number of zeros of the velocity until it rests, including the start if at rest.
-    [[nodiscard]] double extremes() const;
+    double extremes() const;
     /// Requires 0 <= n < extremes().
-    [[nodiscard]] Extreme extreme(double n) const;
+    Extreme extreme(double n) const;
 
 private:
-    [[nodiscard]] double half_cycles_to_rest() const;
-    [[nodiscard]] bool stays(double theta) const;
-    [[nodiscard]] double first_zero(double side) const;
-    [[nodiscard]] model::State arc(double side, const model::State& start, double t) const;
-    [[nodiscard]] double half_cycle() const;
+    double half_cycles_to_rest() const;
+    bool stays(double theta) const;
+    double first_zero(double side) const;
+    model::State arc(double side, const model::State& start, double t) const;
+    double half_cycle() const;
 
     model::Oscillator system_;
     model::State initial_;
@@ -68,6 +108,12 @@ private:
     Extreme first_{};    // its t is infinite if there is none
     double until_rest_;  // half cycles from the first extreme to rest
 };
+
+/// Stores theta at these increasing times, starting from `initial` at the first one: a thousand samples cost a few
+/// hundred sines. Requires a linear spring, Coulomb friction and less than critical damping. With `rests_at` the mass
+/// rests at that extreme (0: the first) regardless of the friction limit.
+void free_decay(const model::Oscillator& system, const model::State& initial, std::span<const double> times,
+                std::optional<double> rests_at, std::span<double> theta);
 
 /// delta = ln(X0/X2) = 2 pi zeta / sqrt(1 - zeta^2) from viscous damping alone; zeta < 1.
 double logarithmic_decrement(double zeta);

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "model/laws/coulomb.hpp"
-#include "model/laws/freewheel.hpp"
 #include "motion/engine/run.hpp"
 #include "support/catch.hpp"
 #include "support/written.hpp"

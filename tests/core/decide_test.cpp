@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "model/laws/coulomb.hpp"
-#include "model/terms/constant.hpp"
+#include "model/terms/levels.hpp"
 #include "support/catch.hpp"
 
 namespace dinal::decide_test {

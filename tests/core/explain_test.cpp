@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "analysis/recurrence.hpp"
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
 #include "support/measure.hpp"

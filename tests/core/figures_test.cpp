@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "plots/paper_layout.hpp"
+#include "plots/painter.hpp"
 #include "plots/shades.hpp"
 #include "support/catch.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "analysis/energy.hpp"
 #include "analysis/explain.hpp"
-#include "model/laws/asymmetric.hpp"
+#include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
 #include "model/laws/user_law.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <functional>
 
-#include "motion/engine/affine_step.hpp"
+#include "motion/engine/affine_block.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 

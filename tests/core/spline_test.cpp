@@ -1,6 +1,6 @@
 // excitation.samples with a cubic spline: against the polynomials and the derivatives that define it, the dense system
 // of all that is asked of its pieces, a sine, and motions under it by two integrators.
-#include "model/terms/spline.hpp"
+#include "model/terms/polyline.hpp"
 
 #include <Eigen/LU>
 #include <cmath>

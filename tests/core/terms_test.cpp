@@ -1,7 +1,7 @@
 // Where terms break, to the last bit; oracle_test.cpp has their values by lot.
 #include "model/terms.hpp"
 
-#include "model/forcing.hpp"
+#include "model/excitation.hpp"
 #include "support/excitations.hpp"
 #include "support/within.hpp"
 

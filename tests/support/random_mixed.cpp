@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/laws/asymmetric.hpp"
+#include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
 #include "model/laws/user_law.hpp"
@@ -340,7 +340,7 @@ void draw_event(Lot& lot, MixedCase& c) {
     if (!lot.once_in(3)) return;
     const double level = lot.between(-0.5, 0.5), part = lot.once_in(2) ? 1 : lot.between(-0.9, 0.9);
     const auto passes = [=](auto, auto theta, auto, auto) { return theta - level; };
-    model::WantedEvent event{.name = "level", .when = ours(passes), .direction = model::Crossing::up};
+    model::WantedEvent event{.name = "level", .when = ours(passes), .direction = model::Direction::up};
     if (part != 1) event.act = std::make_shared<Bounce>(part);
     c.drive.events.push_back(event);
     c.truth.when = theirs(passes), c.truth.kept_velocity = part;

@@ -2,6 +2,7 @@
 // Astrom and Lischinsky (1995), and Dahl's (1968), its case without damping and with Re = Rd.
 #pragma once
 
+#include <fmt/format.h>
 #include <cmath>
 
 #include "model/friction.hpp"
@@ -19,22 +20,18 @@ struct Bristle final : BendingLaw {
     bool dahl = false;
 
     static constexpr bool depends_on_speed = true;
-    [[nodiscard]] double greatest() const { return breakaway.value_or(kinetic); }
+    double greatest() const { return breakaway.value_or(kinetic); }
     /// The torque of steady slip without its viscous part.
-    [[nodiscard]] double steady(double v) const {
+    double steady(double v) const {
         const double x = v / speed;
         return kinetic + (greatest() - kinetic) * std::exp(-x * x);
     }
-    [[nodiscard]] double bend_rate(double v, double z) const override {
-        return v - stiffness * std::fabs(v) * z / steady(v);
-    }
-    [[nodiscard]] double torque(double v, double z) const override {
-        return stiffness * z + damping * bend_rate(v, z) + viscous * v;
-    }
-    [[nodiscard]] double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }
-    [[nodiscard]] double holding(Motion /*way*/) const { return greatest(); }
+    double bend_rate(double v, double z) const override { return v - stiffness * std::fabs(v) * z / steady(v); }
+    double torque(double v, double z) const override { return stiffness * z + damping * bend_rate(v, z) + viscous * v; }
+    double sliding(Motion /*way*/, double v) const { return steady(v) + viscous * v; }
+    double holding(Motion /*way*/) const { return greatest(); }
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, greatest()); }
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 };
 
 inline constexpr text::Option dahl_options[] = {
@@ -62,5 +59,27 @@ inline std::string Bristle::lua_text() const {
     return dahl ? text::lua_text("friction.dahl", dahl_options, *this, text::Defaults::left_out)
                 : text::lua_text("friction.lugre", lugre_options, *this, text::Defaults::left_out);
 }
+
+// The Jenkins element: a spring in series with a dry slider. Several in parallel form Iwan's hysteresis.
+
+/// torque = stiffness z, |torque| <= Rd; z' is the slip while the slider sticks, and 0 while it slides.
+struct Jenkins {
+    double stiffness = 0, kinetic = 0;
+
+    static constexpr bool depends_on_speed = false;
+    double sliding(Motion /*way*/, double /*speed*/) const { return kinetic; }
+    double holding(Motion /*way*/) const { return kinetic; }
+    [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, kinetic); }
+    std::string lua_text() const {
+        return fmt::format("friction.jenkins{{ stiffness = {}, Rd = {} }}", stiffness, kinetic);
+    }
+};
+
+inline constexpr text::Option jenkins_options[] = {
+    {"stiffness", "torque per rad", text::needed, text::positive, "of its spring", text::fills<&Jenkins::stiffness>},
+    {"Rd", "torque", text::needed, text::positive, "dry friction of its slider", text::fills<&Jenkins::kinetic>},
+};
+inline constexpr text::Call jenkins_call{"friction.jenkins", "friction.jenkins{ stiffness = 100, Rd = 1 }",
+                                         jenkins_options};
 
 }  // namespace dinal::model::laws

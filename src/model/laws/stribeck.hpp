@@ -17,32 +17,32 @@ struct Stribeck {
     double shape = 2;
 
     static constexpr bool depends_on_speed = true;
-    [[nodiscard]] double sliding(Motion /*way*/, double v) const {
+    double sliding(Motion /*way*/, double v) const {
         if (v == 0) return breakaway;
         constexpr double farthest = 2;  // limits the exponent below speed 0, where odd powers grow
         const double exponent = speed_ratio_power(v);
         const bool grows = v < 0 && std::fmod(shape, 2) == 1;
         return kinetic + (breakaway - kinetic) * std::exp(grows ? std::min(exponent, farthest) : -exponent);
     }
-    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway; }
+    double holding(Motion /*way*/) const { return breakaway; }
     /// Beyond flat_from() the law is Coulomb's to rounding.
-    [[nodiscard]] std::size_t ranges() const { return std::isfinite(flat_from()) ? 2 : 1; }
-    [[nodiscard]] SpeedRange range(std::size_t i) const {
+    std::size_t ranges() const { return std::isfinite(flat_from()) ? 2 : 1; }
+    SpeedRange range(std::size_t i) const {
         if (i == 1) return {.from = flat_from(), .straight = true, .torque = kinetic};
         return {.to = flat_from()};
     }
-    [[nodiscard]] double slope(double v) const;
-    [[nodiscard]] double scale(double v) const;
+    double slope(double v) const;
+    double scale(double v) const;
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 
 private:
     /// (|v|/speed)^shape
-    [[nodiscard]] double speed_ratio_power(double v) const {
+    double speed_ratio_power(double v) const {
         const double x = std::fabs(v / speed);
         return shape == 2 ? x * x : shape == 1 ? x : std::pow(x, shape);
     }
-    [[nodiscard]] double flat_from() const {
+    double flat_from() const {
         constexpr double nothing = 38;  // exp(-nothing) < 2^-54
         return speed * (shape == 2 ? std::sqrt(nothing) : std::pow(nothing, 1 / shape));
     }

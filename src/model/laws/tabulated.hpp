@@ -15,15 +15,15 @@ struct Tabulated {
     std::optional<double> breakaway{};  ///< Re; by default the first torque
 
     static constexpr bool depends_on_speed = true;
-    [[nodiscard]] double sliding(Motion /*way*/, double v) const {
+    double sliding(Motion /*way*/, double v) const {
         if (v >= speed.back()) return torque.back();
         const auto above = std::upper_bound(speed.begin() + 1, speed.end(), v);  // the first line extends below 0
         return range(static_cast<std::size_t>(above - speed.begin()) - 1).at(v);
     }
-    [[nodiscard]] double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
+    double holding(Motion /*way*/) const { return breakaway.value_or(torque.front()); }
     /// 0 if the slope of a line overflows.
-    [[nodiscard]] std::size_t ranges() const;
-    [[nodiscard]] SpeedRange range(std::size_t i) const {
+    std::size_t ranges() const;
+    SpeedRange range(std::size_t i) const {
         SpeedRange line{.from = speed[i], .straight = true, .torque = torque[i]};
         if (i + 1 == speed.size()) return line;
         line.to = speed[i + 1];
@@ -31,7 +31,7 @@ struct Tabulated {
         return line;
     }
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 };
 
 inline constexpr text::Option tabulated_options[] = {

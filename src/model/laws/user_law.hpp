@@ -20,12 +20,12 @@ struct UserLaw {
 
     static constexpr bool depends_on_speed = true;
     /// NaN if the function fails or is negative.
-    [[nodiscard]] double sliding(Motion /*way*/, double speed) const {
+    double sliding(Motion /*way*/, double speed) const {
         if (speed == 0) return at_zero;
         if (speed > 0) return function->value(speed, {});
         return 2 * at_zero - function->value(-speed, {});  // continues with its slope at 0
     }
-    [[nodiscard]] double holding(Motion /*way*/) const { return std::max(breakaway.value_or(at_zero), at_zero); }
+    double holding(Motion /*way*/) const { return std::max(breakaway.value_or(at_zero), at_zero); }
     [[nodiscard]] std::optional<text::Error> complaint() const {
         // Tolerance for the rounding of a sum that should give Re at speed 0.
         constexpr double rounded = 16 * std::numeric_limits<double>::epsilon();

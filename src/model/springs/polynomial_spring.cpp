@@ -51,7 +51,7 @@ std::optional<text::Error> PolynomialSpring::complaint() const {
 }
 
 bool PolynomialSpring::is_odd() const {
-    return std::all_of(terms.begin(), terms.end(), [](const auto& term) { return term.first % 2 == 1; });
+    return std::ranges::all_of(terms, [](const auto& term) { return term.first % 2 == 1; });
 }
 
 std::string PolynomialSpring::lua_text() const {

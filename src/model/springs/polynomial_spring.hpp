@@ -15,13 +15,13 @@ struct PolynomialSpring {
 
     static constexpr int highest_power = 31;
 
-    [[nodiscard]] double torque(double theta) const;
+    double torque(double theta) const;
     /// The sum of c theta^(n + 1)/(n + 1).
-    [[nodiscard]] double energy(double theta) const;
+    double energy(double theta) const;
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    [[nodiscard]] bool is_odd() const;
+    bool is_odd() const;
     [[nodiscard]] static bool may_go_on() { return true; }
-    [[nodiscard]] std::string lua_text() const;
+    std::string lua_text() const;
 };
 
 }  // namespace dinal::model::springs

@@ -13,13 +13,13 @@ struct UserSpring {
     std::shared_ptr<terms::UserFunction> function;  ///< function of theta
 
     /// NaN if the function fails.
-    [[nodiscard]] double torque(double theta) const { return function->value(theta, {}); }
+    double torque(double theta) const { return function->value(theta, {}); }
     /// By quadrature to rounding; NaN if the function is too rough or fails.
-    [[nodiscard]] double energy(double theta) const;
+    double energy(double theta) const;
     [[nodiscard]] static std::optional<text::Error> complaint() { return std::nullopt; }
     /// The symmetry of the function is unknown, so false.
     [[nodiscard]] static bool is_odd() { return false; }
-    [[nodiscard]] bool may_go_on() const { return function->may_go_on(); }
+    bool may_go_on() const { return function->may_go_on(); }
     /// The function's source is known to Lua only.
     [[nodiscard]] static std::string lua_text() { return ""; }
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -51,7 +52,7 @@ struct Polyline {
 
     Polyline(std::shared_ptr<const Samples> points) : samples(prepared(std::move(points))), most_(greatest()) {}
 
-    [[nodiscard]] double value(double t, double rest = 0) const {
+    double value(double t, double rest = 0) const {
         const Samples& s = *samples;
         if (s.period) return on_piece(piece(t), t, rest);
         if (!(t >= s.t.front())) {
@@ -65,21 +66,20 @@ struct Polyline {
         if (!s.slopes.empty()) return on_piece(piece_of(i), t, rest);
         return s.M[i] + (s.M[i + 1] - s.M[i]) * (((t - s.t[i]) + rest) / (s.t[i + 1] - s.t[i]));
     }
-    [[nodiscard]] double next_break(double t) const {
+    double next_break(double t) const {
         const std::vector<double>& times = samples->t;
         if (times.size() == 1) return never;
         if (samples->period) return later(t, piece(t).to);
         if (t >= times.back()) return never;
         return t < times.front() ? times.front() : times[segment(t) + 1];
     }
-    [[nodiscard]] double constant_from() const {
+    double constant_from() const {
         if (samples->t.size() == 1) return -never;
         if (samples->period) return never;
         return samples->t.back();
     }
-    [[nodiscard]] double most() const { return most_; }
-    [[nodiscard]] double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
-    [[nodiscard]] Detail detail() const { return no_detail; }
+    double most() const { return most_; }
+    double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Samples& s = *samples;
@@ -98,26 +98,26 @@ struct Polyline {
     }
     void delay_by(double d);
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    [[nodiscard]] std::string formula(double gain) const;
+    std::string formula(double gain) const;
 
 private:
-    [[nodiscard]] bool holds() const { return samples->interpolation == Interpolation::hold; }
+    bool holds() const { return samples->interpolation == Interpolation::hold; }
     /// The interval between two neighbouring points.
     struct Piece {
         double from, to;
         std::size_t first, second;
     };
-    [[nodiscard]] Piece piece_of(std::size_t i) const { return {samples->t[i], samples->t[i + 1], i, i + 1}; }
+    Piece piece_of(std::size_t i) const { return {samples->t[i], samples->t[i + 1], i, i + 1}; }
     /// The piece of periodic samples that contains `at`; its ends are exactly the doubles returned as breaks.
-    [[nodiscard]] Piece piece(double at) const;
+    Piece piece(double at) const;
     /// The coefficients in powers of the time since the piece began.
-    [[nodiscard]] std::array<double, 4> powers(const Piece& now) const {
+    std::array<double, 4> powers(const Piece& now) const {
         const Samples& s = *samples;
         const double h = now.to - now.from, rise = (s.M[now.second] - s.M[now.first]) / h;
         const double a = s.slopes[now.first], b = s.slopes[now.second];
         return {s.M[now.first], a, (3 * rise - 2 * a - b) / h, (a + b - 2 * rise) / (h * h)};
     }
-    [[nodiscard]] double on_piece(const Piece& now, double t, double rest) const {
+    double on_piece(const Piece& now, double t, double rest) const {
         const Samples& s = *samples;
         if (now.first == now.second) return s.M.front();
         if (holds()) return s.M[now.first];
@@ -129,11 +129,11 @@ private:
     /// Computes the slopes of a spline and drops a last point that repeats the first.
     static std::shared_ptr<const Samples> prepared(std::shared_ptr<const Samples> points);
     /// A bound of |M|: a spline lies within the hull of its control points.
-    [[nodiscard]] double greatest() const;
+    double greatest() const;
 
     /// The index i with t[i] <= at < t[i + 1], for times inside the table. The first guess assumes evenly spaced
     /// samples.
-    [[nodiscard]] std::size_t segment(double at) const {
+    std::size_t segment(double at) const {
         const std::vector<double>& t = samples->t;
         const double steps = static_cast<double>(t.size() - 1);
         const double guess = std::clamp(steps * fraction(at, t.front(), t.back()), 0.0, steps - 1);
@@ -141,7 +141,7 @@ private:
         if (t[i] <= at && at < t[i + 1]) {
             return i;
         }
-        return static_cast<std::size_t>(std::upper_bound(t.begin(), t.end(), at) - t.begin()) - 1;
+        return static_cast<std::size_t>(std::ranges::upper_bound(t, at) - t.begin()) - 1;
     }
 
     double most_;  // cached: every run needs it, and a record may be long
@@ -158,5 +158,13 @@ inline constexpr TermText Polyline::about{
     "print(M(0.5), M(4.5))  --> 0.6875\t0.6875\n"
     "M = excitation.samples{ t = { 0, 1, 2 }, M = { 5, 7, 6 }, interpolation = \"hold\" }\n"
     "print(M(0.9), M(1), M(9))  --> 5.0\t7.0\t6.0"};
+
+/// The cubic spline through points is given by its slopes there; its first two derivatives are continuous. These are
+/// the slopes at increasing times. The third derivative is continuous at the second point and the last but one, too
+/// (not-a-knot, C. de Boor); three points give a parabola, two a straight line.
+std::vector<double> spline_slopes(std::span<const double> t, std::span<const double> values);
+
+/// The slopes of a periodic spline. The period must exceed the span of the times.
+std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<const double> values, double period);
 
 }  // namespace dinal::model::terms

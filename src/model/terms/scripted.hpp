@@ -8,6 +8,7 @@
 
 #include "model/oscillator.hpp"
 #include "model/terms/term.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::model {
 class Formula;
@@ -16,14 +17,11 @@ class Formula;
 namespace dinal::model::terms {
 
 /// A function's memory between its calls in one run.
-class Memory {
+class FunctionMemory : text::NotCopied {
 public:
-    Memory() = default;
-    Memory(const Memory&) = delete;
-    Memory& operator=(const Memory&) = delete;
-    virtual ~Memory() = default;
+    virtual ~FunctionMemory() = default;
     /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
-    [[nodiscard]] virtual std::shared_ptr<Memory> copy() const = 0;
+    virtual std::shared_ptr<FunctionMemory> copy() const = 0;
 };
 
 /// The decisions that a formula's conditions on the motion have taken; while they hold it is smooth. Bit masks stand
@@ -42,11 +40,8 @@ struct Piece {
 };
 
 /// A user's function of t or of t, theta, velocity. Virtual because the core must not depend on its language.
-class UserFunction {
+class UserFunction : text::NotCopied {
 public:
-    UserFunction() = default;
-    UserFunction(const UserFunction&) = delete;
-    UserFunction& operator=(const UserFunction&) = delete;
     virtual ~UserFunction() = default;
     /// Returns NaN if the function failed (its owner knows why): the run ends there.
     virtual double value(double t, const State& state) = 0;
@@ -89,13 +84,13 @@ public:
     /// Drops a failure that occurred only in a rejected trial step.
     virtual void forget_failure() {}
     /// A new memory for a run; none if it needs none, or on failure.
-    virtual std::shared_ptr<Memory> new_memory() { return nullptr; }
+    virtual std::shared_ptr<FunctionMemory> new_memory() { return nullptr; }
     /// Sets the memory for the following calls.
-    virtual void use(const std::shared_ptr<Memory>& /*memory*/) {}
+    virtual void use(const std::shared_ptr<FunctionMemory>& /*memory*/) {}
 };
 
 /// A copy that is not shared; null for null.
-inline std::shared_ptr<Memory> copied(const std::shared_ptr<Memory>& memory) {
+inline std::shared_ptr<FunctionMemory> copied(const std::shared_ptr<FunctionMemory>& memory) {
     return memory == nullptr ? nullptr : memory->copy();
 }
 
@@ -112,18 +107,18 @@ struct Scripted {
     double delay = 0;
     std::shared_ptr<UserFunction> original = {};  ///< knows the breaks if `function` is a replacement
 
-    [[nodiscard]] double next_break(double t) const {
+    double next_break(double t) const {
         const double own = (original != nullptr ? original : function)->next_break(t - delay);
         const double announced = next_announced_break(t);
         return own == never ? announced : std::min(announced, later(t, own + delay));
     }
-    [[nodiscard]] double next_announced_break(double t) const {
+    double next_announced_break(double t) const {
         if (breaks.empty()) {
             return never;
         }
         const auto first_in_cycle = [this, t](double n) {
             const auto at = [this, n](double b) { return b + n * period + delay; };
-            const auto found = std::partition_point(breaks.begin(), breaks.end(), [&](double b) { return at(b) <= t; });
+            const auto found = std::ranges::partition_point(breaks, [&](double b) { return at(b) <= t; });
             return found == breaks.end() ? never : at(*found);
         };
         if (!(period > 0)) {
@@ -137,10 +132,9 @@ struct Scripted {
         }
         return std::nextafter(t, never);
     }
-    [[nodiscard]] double constant_from() const { return never; }
-    [[nodiscard]] double most() const { return never; }
-    [[nodiscard]] double repeats_after() const { return period; }
-    [[nodiscard]] Detail detail() const { return no_detail; }
+    double constant_from() const { return never; }
+    double most() const { return never; }
+    double repeats_after() const { return period; }
     void delay_by(double d) { delay += d; }
     [[nodiscard]] std::optional<text::Error> complaint() const;
     /// Removes a break listed twice: breaks = {0, 1.5, 3} with period = 3 has only two, to rounding.

@@ -1,11 +1,10 @@
-// The interface of an excitation's terms, and code that they share. A term is one file here and one row in
-// model/terms.hpp.
+// The interface of an excitation's terms, and code that they share. A term is one struct in one of the files
+// here and one row in model/terms.hpp.
 //
 // The invariant of this room: `next_break` returns exactly the double that `value` compares with. So value(b) is the
 // new level and value(nextafter(b, -inf)) the old one, however a delay or the ten thousandth period is rounded.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <concepts>
 #include <initializer_list>
@@ -32,7 +31,6 @@ inline constexpr double two_pi = 2 * std::numbers::pi;
 struct Detail {
     double from = never, to = never, apart = never;
 };
-inline constexpr Detail no_detail{};
 
 /// The documentation of a term, and its options.
 struct TermText {
@@ -46,8 +44,10 @@ struct TermText {
 ///     void closed_form(double inside, Sum& sum) const;   adds its formula to any Sum (closed_form.hpp)
 ///     double value(double t, double rest = 0) const;   at t + rest, for terms so quick that the rounding of t matters
 ///     double repeats_after() const;   its period, if it has one
+///     Detail detail() const;   if a large step could miss it
+///     void delay_by(double d);   if adding d to `at` does not delay it
 template <class T>
-concept NativeTerm = requires(const T& term, T& own, double x) {
+concept NativeTerm = requires(const T& term, double x) {
     { term.value(x) } -> std::same_as<double>;
     /// The first time after x at which it or a derivative of it jumps; `never` if there is none.
     { term.next_break(x) } -> std::same_as<double>;
@@ -55,9 +55,6 @@ concept NativeTerm = requires(const T& term, T& own, double x) {
     { term.constant_from() } -> std::same_as<double>;
     /// An upper bound of |value|; `never` if unknown.
     { term.most() } -> std::same_as<double>;
-    { term.detail() } -> std::same_as<Detail>;
-    /// Delays the term by x.
-    own.delay_by(x);
     /// The term times x > 0 as text: "2 sin(3 t)".
     { term.formula(x) } -> std::same_as<std::string>;
     { T::about } -> std::same_as<const TermText&>;
@@ -80,6 +77,24 @@ double period_of(const T& term) {
         return term.repeats_after();
     } else {
         return 0;
+    }
+}
+
+template <class T>
+Detail detail_of(const T& term) {
+    if constexpr (requires { term.detail(); }) {
+        return term.detail();
+    } else {
+        return {};
+    }
+}
+
+template <class T>
+void delay(T& term, double d) {
+    if constexpr (requires { term.delay_by(d); }) {
+        term.delay_by(d);
+    } else {
+        term.at += d;
     }
 }
 

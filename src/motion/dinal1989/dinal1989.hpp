@@ -20,9 +20,9 @@ struct Dinal1989 {
     static const MethodText about;
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
-    [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
-    [[nodiscard]] Run run(const Problem& problem) const;
-    [[nodiscard]] OwnRule own_rule() const;
+    Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
+    Run run(const Problem& problem) const;
+    OwnRule own_rule() const;
 };
 
 inline constexpr const char* stop_rules[] = {"listing", "text"};

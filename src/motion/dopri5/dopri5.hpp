@@ -2,7 +2,7 @@
 // Norsett and Wanner, Solving Ordinary Differential Equations I, II.6.
 #pragma once
 
-#include "motion/engine/plain.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/method.hpp"
 
 namespace dinal::motion::dopri5 {
@@ -28,11 +28,11 @@ struct Dopri5 {
     double tolerance = 0;  ///< error of a step relative to the greatest velocity in it
 
     static const MethodText about;
-    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const {
+    Resolution resolution(const model::Oscillator& system) const {
         return {"T0/27", system.natural_period() / 27, false};
     }
-    [[nodiscard]] Cut cut() const { return {.tolerance = tolerance, .pair = &pair}; }
-    [[nodiscard]] Run run(const Problem& problem) const { return engine::run(problem, cut()); }
+    Cut cut() const { return {.tolerance = tolerance, .pair = &pair}; }
+    Run run(const Problem& problem) const { return engine::run(problem, cut()); }
 };
 
 inline constexpr text::Option dopri5_options[] = {

@@ -33,7 +33,7 @@ class Balances {
 public:
     Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver);
     /// The total inertia of all bodies.
-    [[nodiscard]] double inertia() const { return inertia_; }
+    double inertia() const { return inertia_; }
 
     /// The balance at the present, with contacts about to slip as if they moved. Like the other functions it returns
     /// false if a value is not finite.
@@ -49,7 +49,7 @@ public:
                     Balance& result, SampledLoads* sampled = nullptr);
 
     /// Returns whether any load depends on the motion.
-    [[nodiscard]] bool has_feedback() const { return has_feedback_; }
+    bool has_feedback() const { return has_feedback_; }
 
 private:
     template <class Rate, class Known>

@@ -16,17 +16,17 @@ public:
 
     explicit Breaks(const Mechanics& mechanics);
 
-    [[nodiscard]] double shortest_delay() const { return shortest_delay_; }
-    [[nodiscard]] double longest_delay() const { return longest_delay_; }
+    double shortest_delay() const { return shortest_delay_; }
+    double longest_delay() const { return longest_delay_; }
     /// The next break, or `never`.
-    [[nodiscard]] double next() const {
+    double next() const {
         double found = model::never;
         if (!found_.empty()) found = found_.front();
         return echoes_.empty() ? found : std::min(found, echoes_.front().first);
     }
     /// Adds a break. Returns false if it is already known.
     bool add(double t);
-    [[nodiscard]] bool many() const { return found_.size() >= most_found; }
+    bool many() const { return found_.size() >= most_found; }
     /// Removes breaks up to time t. If none is left and a load has jumped periodically, adds the next jump before
     /// `end`.
     void pass(double t, double end);
@@ -35,7 +35,7 @@ public:
     void echo(double t, int generation);
     /// Turns echoes up to time t into echoes of the next generation. Returns whether there were any.
     bool pass_echoes(double t);
-    [[nodiscard]] const std::vector<Echo>& echoes() const { return echoes_; }
+    const std::vector<Echo>& echoes() const { return echoes_; }
     void go_on_with(std::vector<Echo> echoes) { echoes_ = std::move(echoes); }
 
 private:

@@ -34,7 +34,7 @@ public:
     }
     /// Registers the crossing of a condition; `back` says whether it reverses a crossing shortly before.
     void crossed(bool back) { to_and_fro_ = back ? to_and_fro_ + 1 : 0; }
-    [[nodiscard]] bool to_and_fro_endlessly() const { return to_and_fro_ >= most_at_once; }
+    bool to_and_fro_endlessly() const { return to_and_fro_ >= most_at_once; }
     /// Registers a failed attempt at time t. Returns whether `most` of them made almost no progress.
     bool too_many_attempts(double t, int most) {
         if (++attempts_ < most) return false;

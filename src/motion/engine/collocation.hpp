@@ -17,7 +17,7 @@ public:
 private:
     Attempt find(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing) override;
     Attempt accept(Segment& segment, const Mode& mode, const Frame& frame) override;
-    [[nodiscard]] bool follows_rates() const override { return true; }
+    bool follows_rates() const override { return true; }
 
     void place(Segment& segment, const Frame& frame);
     void guess(Segment& segment, const Frame& frame);

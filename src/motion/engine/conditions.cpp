@@ -41,13 +41,13 @@ public:
     /// its ends, such as the root of a former |theta|. Such a condition is watched up to the next crossing of another
     /// one, or as far as it has a value.
     void watch_not_finite();
-    [[nodiscard]] const std::vector<Crossing>& crossings() const { return crossings_; }
-    [[nodiscard]] double earliest() const { return earliest_; }
+    const std::vector<Crossing>& crossings() const { return crossings_; }
+    double earliest() const { return earliest_; }
 
 private:
     struct Part {
         double first = -1, last = 1;
-        [[nodiscard]] double place(double x) const { return first + (x + 1) * (last - first) / 2; }
+        double place(double x) const { return first + (x + 1) * (last - first) / 2; }
     };
     struct Unknown {
         Piecewise* function;

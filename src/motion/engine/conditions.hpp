@@ -10,7 +10,7 @@
 #include "motion/engine/chatter.hpp"
 #include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
-#include "motion/engine/ranges.hpp"
+#include "motion/engine/signal.hpp"
 #include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"
 
@@ -22,9 +22,9 @@ public:
     /// `told` is the number of values of the state passed to functions; `unit` is the time scale of the motion.
     Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit);
 
-    [[nodiscard]] bool any() const { return any_; }
+    bool any() const { return any_; }
     /// Returns whether a function of the motion has unknown pieces, so that it may jump anywhere.
-    [[nodiscard]] bool samples() const { return samples_; }
+    bool samples() const { return samples_; }
     /// Starts slides of loads that jump at the surface on which the motion rests.
     void start(Now& now) {
         mechanics_.for_each_piecewise(now.t.hi, [&](Piecewise& function) { slides_.start(function, now); });
@@ -47,7 +47,7 @@ public:
     void decide(const Moment& at, const Mode& mode, const Segment& last);
     /// Returns whether all conditions have decisions that certainly hold while the motion is within these ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges, const Moment& from);
-    [[nodiscard]] bool slides() const { return slides_.any(); }
+    bool slides() const { return slides_.any(); }
     /// Ends the stretch at the first change of a condition, if it precedes the present end.
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 
@@ -87,12 +87,12 @@ private:
     void let_go(double t);
     void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
-    [[nodiscard]] bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
+    bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
         if (function.is_friction() || function.is_spring()) return function.is_spring();
         const std::size_t bodies = mechanics_.system().named ? mechanics_.bodies() : 1;
         return bodies < 64 && arguments >> bodies == 0;
     }
-    [[nodiscard]] bool comes_back(const Piecewise& function, std::size_t condition, double now) const;
+    bool comes_back(const Piecewise& function, std::size_t condition, double now) const;
     void cease() {
         for (const SlideChange& change : slides_.end()) ceased_.push_back(change);
     }

@@ -43,7 +43,7 @@ public:
     void apply(Now& now, const Frame& frame, Side when);
 
 private:
-    [[nodiscard]] double angle_given(std::size_t body, double t, Side when) const;
+    double angle_given(std::size_t body, double t, Side when) const;
 
     const Mechanics& mechanics_;
     std::size_t told_;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "motion/engine/chatter.hpp"
@@ -61,7 +60,7 @@ public:
     Watched(const Nodes& values, const F& exact, double rounded, const Series& series)
         : Watched(values, exact, rounded, series, 1e-13) {}
     /// The first x after `from` at which the value leaves this half; an unknown half is set from the nodes.
-    [[nodiscard]] std::optional<double> leaves(Half& half, double from) const {
+    std::optional<double> leaves(Half& half, double from) const {
         const bool at_zero = half == 0 || std::fabs(from == -1 ? values_[0] : exact_(from)) <= floor_;
         if (half == 0) {
             for (std::size_t j = 0; j < node_count && half == 0; ++j) {
@@ -84,7 +83,7 @@ public:
     }
 
     /// Returns whether the value is clearly in this half before x, at a node or halfway to x.
-    [[nodiscard]] bool is_clearly(Half half, double x) const {
+    bool is_clearly(Half half, double x) const {
         if (!(x > -1)) return false;
         for (std::size_t j = 0; j < node_count; ++j) {
             if (cheb::nodes[j] <= x && half_of(values_[j], 0) == half) return true;
@@ -101,7 +100,7 @@ private:
         smooth_ = is_smooth();
     }
     /// Returns whether the series has decayed, or still falls steeply at its end; that of rounding stays level.
-    [[nodiscard]] bool is_smooth() const {
+    bool is_smooth() const {
         constexpr double decayed = 1e-9, decaying = 1e-6, steeply = 64;
         const double tail = cheb::tail(series_);
         double earlier = 0;
@@ -110,18 +109,16 @@ private:
         }
         return tail <= decayed * size_ || (tail <= decaying * size_ && earlier > steeply * tail);
     }
-    [[nodiscard]] Half half_of(double value, Half otherwise) const {
-        return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise;
-    }
+    Half half_of(double value, Half otherwise) const { return value > floor_ ? 1 : value < -floor_ ? -1 : otherwise; }
     struct Part {
         double middle = 0, half = 1;
-        [[nodiscard]] double place(double x) const { return middle + half * x; }
-        [[nodiscard]] double inside(double x) const { return (x - middle) / half; }
-        [[nodiscard]] double end() const { return middle + half; }
+        double place(double x) const { return middle + half * x; }
+        double inside(double x) const { return (x - middle) / half; }
+        double end() const { return middle + half; }
     };
     /// The first zero by the series. Where the series is no greater than its own error, as at the foot of a narrow
     /// window that the square of a wide quantity decides, the function is fitted again on that part alone.
-    [[nodiscard]] std::optional<double> of_series(Half half, double start) const {
+    std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         constexpr double few = 64;
         double least = 1e-10;  // length of a part; grows, as a series that stays near its error would have many parts
@@ -150,8 +147,8 @@ private:
         return {};
     }
     /// Finds candidate zeros by the series of a part; the function itself, which has more digits, decides.
-    [[nodiscard]] std::optional<double> of_series(Half half, double start, const Part& part, const Series& series,
-                                                  Nodes values) const {
+    std::optional<double> of_series(Half half, double start, const Part& part, const Series& series,
+                                    Nodes values) const {
         using namespace cheb;
         for (double& each : values) each *= half;
         Bounded<points> curve(half, series, derivative(series), values);
@@ -176,7 +173,7 @@ private:
         }
         return {};
     }
-    [[nodiscard]] std::optional<double> of_values(Half half, double from) const {
+    std::optional<double> of_values(Half half, double from) const {
         constexpr int parts = 4;
         double a = from;
         for (std::size_t j = 1; j < node_count; ++j) {
@@ -192,7 +189,7 @@ private:
         return {};
     }
     /// The zero between a and b if they are on opposite sides.
-    [[nodiscard]] std::optional<double> refined(Half half, double a, double b) const {
+    std::optional<double> refined(Half half, double a, double b) const {
         const auto beyond = [&](double x) { return -half * exact_(x); };
         const double fa = beyond(a), fb = beyond(b);
         if (!(fa <= rounded_ && fb > rounded_)) return {};

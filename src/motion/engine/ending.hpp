@@ -25,7 +25,7 @@ struct Ending {
     bool blurred = false;
     /// Returns the latest point for user events and conditions. Those very close to a standstill or release count as
     /// later.
-    [[nodiscard]] double before() const {
+    double before() const {
         constexpr double beside_standstill = 1e-12;
         const bool at_standstill = by == By::slip || by == By::release || by == By::stays;
         return x - (at_standstill ? beside_standstill : 0);

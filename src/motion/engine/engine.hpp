@@ -38,7 +38,7 @@ private:
     bool solve(const Frame& frame);
     bool stands_for_good(const Frame& present);
     bool rest(const Frame& present);
-    [[nodiscard]] bool a_belt_jumps_at(double t) const;
+    bool a_belt_jumps_at(double t) const;
     bool belt_jump_found();
     Ending watch(const Frame& frame);
     void hold_again(std::size_t joint, double torques);
@@ -50,7 +50,7 @@ private:
     bool ask_after_break();
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);
-    [[nodiscard]] double kinetic_energy() const;
+    double kinetic_energy() const;
 
     // The length of the next stretch (choose.cpp).
     void set_pace();
@@ -74,12 +74,12 @@ private:
     bool meet_stop(const Ending& ending);
     bool turn_slider(const Ending& ending);
     bool decide(bool told, std::optional<Cause::Released> released = {});
-    [[nodiscard]] bool nothing_presses(std::size_t joint) const;
+    bool nothing_presses(std::size_t joint) const;
     bool open_and_close();
     enum class Because { impact, act, belt };
     bool restart_contacts(Because why, std::size_t at = 0);
     void restart_contact(std::size_t joint, Because why, std::size_t at, double caught);
-    [[nodiscard]] double rounding_of_slip(std::size_t joint, Because why) const;
+    double rounding_of_slip(std::size_t joint, Because why) const;
     void let_slide(std::size_t slider, model::Motion way);
     bool turn_sliders();
     std::vector<double> catch_freewheels(bool at_start);
@@ -110,7 +110,7 @@ private:
     bool act_all(const std::vector<std::size_t>& told);
     bool act(std::size_t event, const std::vector<std::size_t>& told);
     void see_flight();
-    [[nodiscard]] double energy_at(std::size_t joint, const std::vector<double>& y) const;
+    double energy_at(std::size_t joint, const std::vector<double>& y) const;
 
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
@@ -121,17 +121,17 @@ private:
     void tell(model::EventKind kind, std::size_t where) { recorder_->tell(now_, kind, where); }
     void project(Side when) { projection_.apply(now_, frames_->of(now_.mode), when); }
     /// Returns whether the run is past its start; contacts have no events at the start.
-    [[nodiscard]] bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
-    [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+    bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
+    std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
-    [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
+    std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
     /// Returns the magnitude of the present torques on the angle of a joint.
     [[nodiscard]] double torque_size(std::size_t joint) {
         sizes_.find(mechanics_, segment_, now_.here());
         return sizes_.on(joint_at(joint));
     }
-    [[nodiscard]] const model::Joint& joint_at(std::size_t joint) const { return problem_.system.joints[joint]; }
+    const model::Joint& joint_at(std::size_t joint) const { return problem_.system.joints[joint]; }
 
     // The motion.
     const Request& problem_;

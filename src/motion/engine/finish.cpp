@@ -6,7 +6,6 @@
 #include <limits>
 
 #include "motion/engine/engine.hpp"
-#include "motion/engine/recorder.hpp"
 #include "motion/roughness.hpp"
 
 namespace dinal::motion::engine {

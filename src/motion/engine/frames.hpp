@@ -22,7 +22,7 @@ public:
     [[nodiscard]] const Frame& of(const Mode& mode);
 
 private:
-    [[nodiscard]] std::uint64_t short_key(const Mode& mode) const;
+    std::uint64_t short_key(const Mode& mode) const;
 
     using Key = std::pair<std::vector<char>, std::vector<int>>;  ///< sticking joints, and walls at which joints lean
 

@@ -12,13 +12,13 @@ class StretchLeg final : public JointLeg {
 public:
     StretchLeg(const std::vector<model::Joint>& joints, std::size_t bodies, const Kept& kept)
         : joints_(joints), bodies_(bodies), kept_(kept), works_(joints.size()) {}
-    [[nodiscard]] double length() const override { return kept_.length; }
+    double length() const override { return kept_.length; }
     /// A row at the end time of the stretch may be slightly later than the stretch.
-    [[nodiscard]] double since_start(double t) const override {
+    double since_start(double t) const override {
         const double since = kept_.start.until(t);
         return t >= kept_.start.later(kept_.length).hi ? std::max(since, kept_.length) : since;
     }
-    [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
+    Work work(std::size_t joint, double since_start) const override {
         if (!(since_start > 0)) return {};
         if (kept_.remade != nullptr) {
             if (!remade_) remade_ = kept_.remade->works();
@@ -37,14 +37,14 @@ private:
     struct Integrals {
         Integral input{}, viscous{}, dry{}, belt{}, base{}, stop{}, kept{};
     };
-    [[nodiscard]] Series whole(std::size_t k) const {
+    Series whole(std::size_t k) const {
         Series series = kept_.y[k].change;
         series[0] += kept_.y[k].begin;
         return series;
     }
-    [[nodiscard]] Integrals integrals(std::size_t joint) const {
+    Integrals integrals(std::size_t joint) const {
         const model::Joint& own = joints_[joint];
-        const Kept::Acting& at_nodes = kept_.acting[joint];
+        const Kept::JointTorques& at_nodes = kept_.acting[joint];
         const Series friction = cheb::fit(at_nodes.friction);
         const Series belt = at_nodes.belt != nullptr ? cheb::fit(*at_nodes.belt) : Series{};
         Series v{};
@@ -93,9 +93,9 @@ private:
 class JumpLeg final : public JointLeg {
 public:
     JumpLeg(double t, std::size_t joint, const Work& done) : t_(t), joint_(joint), work_(done) {}
-    [[nodiscard]] double length() const override { return 0; }
-    [[nodiscard]] double since_start(double t) const override { return t - t_; }
-    [[nodiscard]] Work work(std::size_t joint, double since_start) const override {
+    double length() const override { return 0; }
+    double since_start(double t) const override { return t - t_; }
+    Work work(std::size_t joint, double since_start) const override {
         return since_start < 0 || joint != joint_ ? Work{} : work_;
     }
 
@@ -109,7 +109,7 @@ private:
 
 void History::add(Kept kept, bool for_good, double past) {
     const std::size_t bytes = sizeof(Kept) + (kept.remade != nullptr ? kept.remade->bytes() : 0) +
-                              kept.y.size() * sizeof(Kept::Value) + kept.acting.size() * sizeof(Kept::Acting);
+                              kept.y.size() * sizeof(Kept::Value) + kept.acting.size() * sizeof(Kept::JointTorques);
     if (for_good && bytes_ + bytes > most_) whole_until_ = std::min(whole_until_, kept.start.hi);
     for_good = for_good && whole_until_ == std::numeric_limits<double>::infinity();
     if (!for_good && !(kept.start.after(kept.length) >= past)) return;

@@ -6,27 +6,28 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "model/system.hpp"
 #include "motion/clock.hpp"
 #include "motion/course.hpp"
+#include "motion/engine/crossing.hpp"
+#include "motion/engine/mechanics.hpp"
 #include "motion/engine/nodes.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::engine {
 
 /// A stretch of one body that is recomputed when it is evaluated.
-class Remade {
+class Remade : text::NotCopied {
 public:
-    Remade() = default;
-    Remade(const Remade&) = delete;
-    Remade& operator=(const Remade&) = delete;
     virtual ~Remade() = default;
     /// Angle and velocity at the time since the start.
-    [[nodiscard]] virtual std::vector<double> at(double since_start) const = 0;
+    virtual std::vector<double> at(double since_start) const = 0;
     /// The work as a function of the time since the start. The function must not outlive the stretch.
     [[nodiscard]] virtual std::function<Work(double)> works() const = 0;
-    [[nodiscard]] virtual std::size_t bytes() const = 0;
+    virtual std::size_t bytes() const = 0;
 };
 
 /// The stored data of a stretch, or of its beginning if an event ended it there.
@@ -41,7 +42,7 @@ struct Kept {
     std::vector<Value> y{};  ///< each angle, velocity and state
     /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial
     /// torque of the base.
-    struct Acting {
+    struct JointTorques {
         Nodes M{}, friction{};                  ///< torques on its angle
         std::unique_ptr<Nodes> push{}, belt{};  ///< null without base or belt
         std::unique_ptr<Nodes> springs{};       ///< torque of sticking sliders and pressed walls, which store energy
@@ -49,24 +50,24 @@ struct Kept {
         double slides = 0;                      ///< torque of sliding sliders
         bool holds = false;                     ///< whether friction holds without slip
     };
-    std::vector<Acting> acting{};
+    std::vector<JointTorques> acting{};
     std::shared_ptr<const Remade> remade{};  ///< replaces changes and torques
 
-    [[nodiscard]] double value(std::size_t k, double x) const {
+    double value(std::size_t k, double x) const {
         return x <= -1 ? y[k].begin : y[k].begin + cheb::value(y[k].change, std::min(x, 1.0));
     }
-    [[nodiscard]] double x(double t) const { return start.until(t) / h - 1; }
+    double x(double t) const { return start.until(t) / h - 1; }
 };
 
 /// The energy at the joints over a stretch, or over an instantaneous change.
 class JointLeg {
 public:
     virtual ~JointLeg() = default;
-    [[nodiscard]] virtual double length() const = 0;
-    [[nodiscard]] virtual double since_start(double t) const = 0;
+    virtual double length() const = 0;
+    virtual double since_start(double t) const = 0;
     /// The work at a joint from the start to `since_start`; the work of M and the base on a body counts at its joint
     /// with the ground.
-    [[nodiscard]] virtual Work work(std::size_t joint, double since_start) const = 0;
+    virtual Work work(std::size_t joint, double since_start) const = 0;
 };
 
 class History {
@@ -91,16 +92,16 @@ public:
     void close(const Clock& end, const std::vector<double>& y);
 
     /// All angles, velocities and states at a time of the run.
-    [[nodiscard]] std::vector<double> at(double t) const { return at(t, Side::at); }
-    [[nodiscard]] std::vector<double> at(double t, Side side) const;
-    [[nodiscard]] std::size_t bytes() const { return bytes_; }
+    std::vector<double> at(double t) const { return at(t, Side::at); }
+    std::vector<double> at(double t, Side side) const;
+    std::size_t bytes() const { return bytes_; }
     /// The time up to which the motion was stored, in earlier runs, too; infinite if all was.
-    [[nodiscard]] double whole_until() const {
+    double whole_until() const {
         return before_ == nullptr ? whole_until_ : std::min(whole_until_, before_->whole_until());
     }
-    [[nodiscard]] bool empty() const { return list_.empty(); }
+    bool empty() const { return list_.empty(); }
     /// The end times of the stored stretches.
-    [[nodiscard]] std::vector<double> ends() const;
+    std::vector<double> ends() const;
     /// Visits all legs in order without gaps. Requires a run that keeps torques.
     void legs(const std::function<void(const JointLeg&)>& visit) const;
     /// The same, including earlier runs if this one began after `start`.
@@ -123,6 +124,33 @@ private:
     std::vector<Kept> list_;
     std::size_t for_good_ = 0;  ///< length of the permanent part of the list
     std::vector<Jump> jumps_;
+};
+
+/// The state that a continued run needs.
+struct Carry {
+    std::vector<double> y;
+    std::vector<double> low;  ///< rounding errors of the angles; may be empty
+    Mode mode;
+    std::vector<std::vector<Signal::Memory>> controllers;  ///< memory of the loads of each body
+    std::vector<Watch> watches;                            ///< state of the user's events; may be empty
+    std::vector<std::pair<double, int>> echoes;            ///< breaks that delays repeat
+    std::vector<model::Motion> heading;                    ///< directions without dry friction; may be empty
+    std::shared_ptr<const History> past;
+    double born = 0;   ///< start of the first of these runs
+    Floor floor = {};  ///< may be empty
+};
+
+/// The data for views of single bodies and links, and for continuing the run.
+struct Left {
+    std::vector<double> start = {};  ///< all angles, velocities and states at the start
+    Mode begun = {};                 ///< mode of the contacts at the start
+    std::shared_ptr<const History> history = {};
+    std::shared_ptr<const Carry> carry = {};
+
+    /// Returns whether the motion between the rows was kept. A run of no duration counts as kept.
+    bool is_dense(const Run& run) const {
+        return history != nullptr && (history->bytes() > 0 || run.t_stop == run.t_start);
+    }
 };
 
 }  // namespace dinal::motion::engine

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "motion/engine/breaks.hpp"
 #include "motion/engine/engine.hpp"
-#include "motion/engine/user_events.hpp"
 
 namespace dinal::motion::engine {
 

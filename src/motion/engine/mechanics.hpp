@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "model/system.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/signal.hpp"
 #include "motion/simulate.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::engine {
 
@@ -24,7 +24,7 @@ struct Floor {
     std::vector<double> noise;     ///< detected roughness
     std::vector<double> greatest;  ///< greatest value so far; only a small part of it is accepted as noise
     /// Returns the greatest noise of torques on the first n, the bodies.
-    [[nodiscard]] double noise_of_torques(std::size_t n) const {
+    double noise_of_torques(std::size_t n) const {
         return *std::max_element(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(n));
     }
 };
@@ -52,11 +52,11 @@ struct Mode {
     std::vector<Slipping> friction;  ///< friction state of each joint
     std::vector<int> leans;          ///< each joint: 1 at its upper wall, -1 at its lower one, otherwise 0
 
-    [[nodiscard]] bool holds(std::size_t joint) const {
+    bool holds(std::size_t joint) const {
         return keeps_place(joint) || (friction[joint].way == model::Motion::stuck && rubs[joint]);
     }
     /// Returns whether the joint holds its angle, not only its velocity.
-    [[nodiscard]] bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
+    bool keeps_place(std::size_t joint) const { return leans[joint] != 0 || rigid[joint] != 0; }
     std::vector<char> rubs;                   ///< each joint: whether it has dry friction and is pressed together
     std::vector<char> rigid;                  ///< each joint: whether it is rigid
     std::vector<model::Motion> sliders = {};  ///< direction of sliding of each slider
@@ -88,9 +88,9 @@ struct Frame {
     std::vector<std::size_t> sharing_of;  ///< joints of the rows of `sharing`
     double longest = model::never;        ///< longest stretch that resolves the vibrations of its groups, time units
 
-    [[nodiscard]] std::size_t groups() const { return inertia.size(); }
+    std::size_t groups() const { return inertia.size(); }
     /// Returns whether the holding joints fix the angle of this one.
-    [[nodiscard]] bool keeps(std::size_t joint) const { return joints[joint].empty(); }
+    bool keeps(std::size_t joint) const { return joints[joint].empty(); }
     /// Computes the velocity of each body relative to its groups from the velocities of the joints' belts.
     void offsets(const std::vector<double>& of_joints, const Mode& mode, std::vector<double>& of_bodies) const;
     /// Computes the torque of each sticking joint from the missing torque of each body, I a - torque.
@@ -115,32 +115,30 @@ std::vector<std::size_t> redundant_rigid(const model::System& system);
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high);
 
-class Mechanics {
+class Mechanics : text::NotCopied {
 public:
     Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);
-    Mechanics(const Mechanics&) = delete;
-    Mechanics& operator=(const Mechanics&) = delete;
     ~Mechanics() = default;
 
-    [[nodiscard]] const model::System& system() const { return system_; }
-    [[nodiscard]] std::size_t bodies() const { return system_.bodies.size(); }
-    [[nodiscard]] std::size_t joints() const { return system_.joints.size(); }
+    const model::System& system() const { return system_; }
+    std::size_t bodies() const { return system_.bodies.size(); }
+    std::size_t joints() const { return system_.joints.size(); }
     /// The number of states: the user's, each joint's bristle deflection, and each slider's spring.
-    [[nodiscard]] std::size_t states() const { return drive_.states.size() + bristles_.size() + sliders_.size(); }
-    [[nodiscard]] std::size_t states_of_user() const { return drive_.states.size(); }
-    [[nodiscard]] std::size_t events() const { return drive_.events.size(); }
+    std::size_t states() const { return drive_.states.size() + bristles_.size() + sliders_.size(); }
+    std::size_t states_of_user() const { return drive_.states.size(); }
+    std::size_t events() const { return drive_.events.size(); }
     /// The law of a joint if it has an internal state, or nullptr.
-    [[nodiscard]] const model::BendingLaw* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
+    const model::BendingLaw* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
-    [[nodiscard]] const std::vector<std::size_t>& bristles() const { return bristles_; }
+    const std::vector<std::size_t>& bristles() const { return bristles_; }
     /// A Jenkins element: a dry slider behind a spring. `bend` is the index of its deflection in y.
     struct Slider {
         std::size_t joint, bend;  ///< index of its deflection in y
         double stiffness, limit;
     };
-    [[nodiscard]] const std::vector<Slider>& sliders() const { return sliders_; }
+    const std::vector<Slider>& sliders() const { return sliders_; }
     /// The torque of its sliders' springs on a joint.
-    [[nodiscard]] double slider_torque(std::size_t joint, std::span<const double> y) const {
+    double slider_torque(std::size_t joint, std::span<const double> y) const {
         double torque = 0;
         for (const Slider& slider : sliders_) {
             if (slider.joint == joint) torque += slider.stiffness * y[slider.bend];
@@ -148,38 +146,36 @@ public:
         return torque;
     }
     /// The torque of a joint's bristles; 0 without bristles.
-    [[nodiscard]] double bristle_torque(std::size_t joint, const Moment& at, double belt) const;
+    double bristle_torque(std::size_t joint, const Moment& at, double belt) const;
     /// The inertia of a body; 0 if its motion is prescribed without inertia.
-    [[nodiscard]] double own_inertia(std::size_t body) const {
+    double own_inertia(std::size_t body) const {
         const auto& moved = system_.bodies[body].moved;
         return moved && moved->without_inertia ? 0 : system_.bodies[body].inertia;
     }
-    [[nodiscard]] std::size_t size() const { return 2 * bodies() + states(); }
+    std::size_t size() const { return 2 * bodies() + states(); }
     /// Returns whether torques or rates depend on the motion other than through constant coefficients.
-    [[nodiscard]] bool nonlinear() const { return nonlinear_; }
+    bool nonlinear() const { return nonlinear_; }
     /// Returns whether its friction law is native and has constant parameters.
-    [[nodiscard]] bool is_native(std::size_t joint) const { return contacts_[joint].native; }
+    bool is_native(std::size_t joint) const { return contacts_[joint].native; }
     /// Returns whether the spring is a user's function with known conditions, which may jump.
-    [[nodiscard]] bool spring_may_jump(std::size_t joint) const { return contacts_[joint].spring.has_value(); }
-    [[nodiscard]] bool spring_slides(std::size_t joint) const {
-        return contacts_[joint].spring && contacts_[joint].spring->slides();
-    }
+    bool spring_may_jump(std::size_t joint) const { return contacts_[joint].spring.has_value(); }
+    bool spring_slides(std::size_t joint) const { return contacts_[joint].spring && contacts_[joint].spring->slides(); }
     /// Returns whether all joint torques are linear in angle and velocity, except for friction that depends on the
     /// direction only, and nothing else depends on the motion.
-    [[nodiscard]] bool all_linear() const { return all_linear_; }
-    [[nodiscard]] bool rubs(std::size_t joint) const { return rubs_[joint] != 0; }
-    [[nodiscard]] const std::vector<char>& rubbing() const { return rubs_; }
-    [[nodiscard]] bool has_belts() const { return has_belts_; }
-    [[nodiscard]] bool has_belt(std::size_t joint) const { return !belts_[joint].none(); }
-    [[nodiscard]] double belt(std::size_t joint, double t, Side side) const;
+    bool all_linear() const { return all_linear_; }
+    bool rubs(std::size_t joint) const { return rubs_[joint] != 0; }
+    const std::vector<char>& rubbing() const { return rubs_; }
+    bool has_belts() const { return has_belts_; }
+    bool has_belt(std::size_t joint) const { return !belts_[joint].none(); }
+    double belt(std::size_t joint, double t, Side side) const;
     /// The belt's acceleration at t from the right, differentiated over `stretch` time units.
-    [[nodiscard]] BeltSlope belt_slope(std::size_t joint, double t, double stretch) const {
+    BeltSlope belt_slope(std::size_t joint, double t, double stretch) const {
         return belts_[joint].none() ? BeltSlope{0, 0} : motion::belt_slope(drive_.belts[joint], t, stretch);
     }
-    [[nodiscard]] double base(double t, Side side) const { return base_.value({t, side, {}}); }
-    [[nodiscard]] bool has_base() const { return !base_.none(); }
+    double base(double t, Side side) const { return base_.value({t, side, {}}); }
+    bool has_base() const { return !base_.none(); }
     /// The friction torque on the joint's first body if the joint does not hold.
-    [[nodiscard]] double friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    double friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Registers an unannounced jump found at this time.
     void jumps_at(double t) { jumps_.insert(std::upper_bound(jumps_.begin(), jumps_.end(), t), t); }
     /// Drops registered jumps before this time.
@@ -202,7 +198,7 @@ public:
     }
     void sample_loads(const NodeTimes& when, std::vector<Nodes>& loads) const;
     /// M of a body or link.
-    [[nodiscard]] double load(std::size_t joint, const Moment& at) const { return loads_[joint].value(at); }
+    double load(std::size_t joint, const Moment& at) const { return loads_[joint].value(at); }
     /// Computes the torque on each body except that of holding joints; `belts` are velocities. Adds the loads that
     /// depend on the motion to `loads`.
     void torques(const Moment& at, const Mode& mode, const std::vector<double>& belts, std::vector<double>& loads,
@@ -210,7 +206,7 @@ public:
     /// The rates of all states. Those of sliders need the mode.
     void rates(const Moment& at, double* out, const Mode* mode = nullptr) const;
     /// The torque of a joint that does not hold.
-    [[nodiscard]] double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    double joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// The torque of a native joint that is not at a wall, at the nodes `first` to `end` - 1. y has angles, velocities
     /// (and states), `belt` the velocity of its belt. The other nodes of `out` are undefined.
     void native_torques(std::size_t joint, const Mode& mode, const std::vector<Nodes>& y, const Nodes& belt,
@@ -219,33 +215,33 @@ public:
     void add_native_friction(std::size_t joint, const Mode& mode, const Nodes& slip, std::size_t first, std::size_t end,
                              Nodes& out) const;
     /// The magnitude of sliding friction.
-    [[nodiscard]] double sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
-    [[nodiscard]] std::size_t range_of(std::size_t joint, double speed) const;
+    double sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
+    std::size_t range_of(std::size_t joint, double speed) const;
     /// The largest pull this way that sticking can hold.
-    [[nodiscard]] double holding(std::size_t joint, model::Motion way, const Moment& at) const;
+    double holding(std::size_t joint, model::Motion way, const Moment& at) const;
     /// The pull in direction `way` at which a joint leaves slip 0 in this mode.
-    [[nodiscard]] double limit_at_rest(std::size_t joint, const Mode& mode, model::Motion way, const Moment& at) const {
+    double limit_at_rest(std::size_t joint, const Mode& mode, model::Motion way, const Moment& at) const {
         const double most = holding(joint, way, at);
         return mode.friction[joint].driven_back && std::isfinite(most) ? sliding(joint, {.way = way}, 0, at) : most;
     }
     /// Returns whether the holding limit depends on more than the direction.
-    [[nodiscard]] bool varies(std::size_t joint) const { return contacts_[joint].varies; }
+    bool varies(std::size_t joint) const { return contacts_[joint].varies; }
     /// Returns whether the joint sticks with limits that may change along a stretch.
-    [[nodiscard]] bool limits_change(std::size_t joint, const Mode& mode) const {
+    bool limits_change(std::size_t joint, const Mode& mode) const {
         return varies(joint) && mode.rubs[joint] != 0 && mode.friction[joint].way == model::Motion::stuck;
     }
-    [[nodiscard]] bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
+    bool has_normal(std::size_t joint) const { return !contacts_[joint].normal.none(); }
     /// Returns whether the contact may open: its normal load, or all of its limits, vary.
-    [[nodiscard]] bool may_open(std::size_t joint) const { return rubs(joint) && contacts_[joint].may_open; }
+    bool may_open(std::size_t joint) const { return rubs(joint) && contacts_[joint].may_open; }
     /// The normal load of a contact, otherwise the greatest of its limits. The contact is open while this is <= 0.
-    [[nodiscard]] double pressing(std::size_t joint, const Moment& at) const;
+    double pressing(std::size_t joint, const Moment& at) const;
     /// The function `when` of a user's event.
-    [[nodiscard]] double when(std::size_t event, const Moment& at) const { return whens_[event].value(at); }
+    double when(std::size_t event, const Moment& at) const { return whens_[event].value(at); }
     /// The size of the torques at a joint, those of springs and friction, as a scale of rounding.
-    [[nodiscard]] double size_of(std::size_t joint, const Moment& at) const;
+    double size_of(std::size_t joint, const Moment& at) const;
 
     /// The weighted sum of a joint's body values, at nodes or as a series.
-    [[nodiscard]] Nodes between(std::size_t joint, std::span<const Nodes> of_bodies) const {
+    Nodes between(std::size_t joint, std::span<const Nodes> of_bodies) const {
         const auto& of = system_.joints[joint].of;
         Nodes sum = of_bodies[of[0].body];
         if (of[0].by != 1) std::for_each(sum.begin(), sum.end(), [by = of[0].by](double& x) { x *= by; });
@@ -253,24 +249,24 @@ public:
         return sum;
     }
     /// The slip velocity of a joint on its belt, at nodes.
-    [[nodiscard]] Nodes slips(std::size_t joint, const std::vector<Nodes>& y, const Nodes& belt) const {
+    Nodes slips(std::size_t joint, const std::vector<Nodes>& y, const Nodes& belt) const {
         return difference(between(joint, std::span(y).subspan(bodies())), belt);
     }
-    [[nodiscard]] double angle(std::size_t joint, std::span<const double> y) const;
-    [[nodiscard]] double velocity(std::size_t joint, std::span<const double> y) const;
+    double angle(std::size_t joint, std::span<const double> y) const;
+    double velocity(std::size_t joint, std::span<const double> y) const;
     /// Returns the size of the velocities whose sum is the joint's velocity; its rounding is relative to this.
-    [[nodiscard]] double speed_scale(std::size_t joint, std::span<const double> y) const;
+    double speed_scale(std::size_t joint, std::span<const double> y) const;
 
-    [[nodiscard]] double next_break(double t) const;
-    [[nodiscard]] double view(double t, double spacing) const;
-    [[nodiscard]] bool may_go_on() const;
+    double next_break(double t) const;
+    double view(double t, double spacing) const;
+    bool may_go_on() const;
     void forget_failure() const;
-    [[nodiscard]] bool asks_functions() const;
+    bool asks_functions() const;
     /// Returns whether there is any user function.
-    [[nodiscard]] bool has_functions() const { return has_functions_; }
+    bool has_functions() const { return has_functions_; }
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. An
     /// upper bound of it if there are many groups.
-    [[nodiscard]] double fastest(const Frame& frame) const;
+    double fastest(const Frame& frame) const;
 
     /// Visits all signals.
     template <class F>
@@ -297,7 +293,7 @@ public:
         }
     }
     /// The user's state of which this is the rate.
-    [[nodiscard]] std::optional<std::size_t> state_of(const Piecewise& rate) const {
+    std::optional<std::size_t> state_of(const Piecewise& rate) const {
         const auto found =
             std::find_if(rates_.begin(), rates_.end(), [&rate](const Piecewise& each) { return &each == &rate; });
         return found == rates_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - rates_.begin()));
@@ -312,7 +308,7 @@ public:
         }
     }
     /// Returns whether some user function of the motion has unknown pieces.
-    [[nodiscard]] bool samples_the_motion() const {
+    bool samples_the_motion() const {
         bool samples = std::any_of(rates_.begin(), rates_.end(), [](const Piecewise& r) { return !r.has_pieces(); });
         for_each_signal([&](const Signal& s) { samples = samples || s.samples_the_motion(); });
         return samples;
@@ -325,16 +321,14 @@ public:
         model::UserFunction* function = nullptr;
         const model::terms::Piece* piece = nullptr;
     };
-    [[nodiscard]] Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
+    Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
     /// The rate function on the other side of the surface along which the state slides.
-    [[nodiscard]] Asked asked_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
-    [[nodiscard]] Asked asked_when(std::size_t event) const {
-        return {drive_.events[event].when.get(), whens_[event].piece()};
-    }
-    [[nodiscard]] Asked asked_spring(std::size_t joint) const;
-    [[nodiscard]] Asked asked_law(std::size_t joint) const;
-    [[nodiscard]] const Signal& base_signal() const { return base_; }
-    [[nodiscard]] const Signal& belt_signal(std::size_t joint) const { return belts_[joint]; }
+    Asked asked_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
+    Asked asked_when(std::size_t event) const { return {drive_.events[event].when.get(), whens_[event].piece()}; }
+    Asked asked_spring(std::size_t joint) const;
+    Asked asked_law(std::size_t joint) const;
+    const Signal& base_signal() const { return base_; }
+    const Signal& belt_signal(std::size_t joint) const { return belts_[joint]; }
     /// Visits the signals that limit or drive a joint's friction in a mode, with the derivative of the torque with
     /// respect to each.
     template <class F>
@@ -355,7 +349,7 @@ public:
         f(c.normal, pressed > 0 ? torque / pressed : 1);
     }
     [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
-    [[nodiscard]] const std::vector<Signal>& loads() const { return loads_; }
+    const std::vector<Signal>& loads() const { return loads_; }
 
 private:
     struct Contact {
@@ -366,15 +360,15 @@ private:
         std::optional<Piecewise> spring = {};  ///< the user's spring, if it has conditions
         bool varies = false, native = false, may_open = false;
         /// Torques that depend on the direction only.
-        struct Constant {
+        struct FixedTorques {
             std::array<double, 2> holding, sliding;
         };
-        std::optional<Constant> constant = {};
+        std::optional<FixedTorques> constant = {};
     };
 
-    [[nodiscard]] double bound_of_fastest(const Frame& frame) const;
-    [[nodiscard]] double spring_torque(std::size_t joint, const Moment& at) const;
-    [[nodiscard]] double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    double bound_of_fastest(const Frame& frame) const;
+    double spring_torque(std::size_t joint, const Moment& at) const;
+    double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Visits each user function.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 

@@ -1,10 +1,14 @@
 #include "motion/engine/modes.hpp"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <optional>
 
 #include "algebra/decompositions.hpp"
+#include "motion/engine/mechanics.hpp"
+#include "motion/engine/moving.hpp"
 
 namespace dinal::motion::engine {
 
@@ -50,6 +54,222 @@ text::Expected<model::Oscillator> no_slower_than_modes(const model::System& syst
     }
     const double most = sums.empty() ? 0 : *std::max_element(sums.begin(), sums.end());
     return model::Oscillator::make({.inertia = 1, .stiffness = most});
+}
+
+namespace {
+
+using model::Motion;
+
+/// A system near a steady motion, as a function of the coordinates of its groups and states.
+class Beside {
+public:
+    explicit Beside(const Moving& given)
+        : given_(given),
+          asking_{.named = given.system.named, .told = 2 * given.system.bodies.size() + given.drive.states.size()},
+          mechanics_(given.system, given.drive, asking_) {
+        const std::size_t joints = mechanics_.joints();
+        y_ = given.drive.theta0;
+        y_.insert(y_.end(), given.drive.velocity0.begin(), given.drive.velocity0.end());
+        for (const model::OwnState& state : given.drive.states) y_.push_back(state.start);
+        y_.resize(2 * bodies() + mechanics_.states(), 0);
+        mode_.friction.resize(joints), mode_.leans.assign(joints, 0), mode_.presses.assign(joints, 0);
+        mode_.sliders.assign(mechanics_.sliders().size(), Motion::stuck);
+        mode_.rubs = mechanics_.rubbing();
+        for (std::size_t j = 0; j < joints; ++j) {
+            const model::Joint& joint = given.system.joints[j];
+            mode_.rigid.push_back(joint.rigid ? 1 : 0);
+            belts_.push_back(mechanics_.belt(j, 0, Side::after));
+            if (mechanics_.may_open(j) && mechanics_.pressing(j, here(y_)) <= 0) mode_.rubs[j] = 0;
+            if (mode_.rubs[j] == 0 || joint.rigid || slip(j) == 0) continue;
+            mode_.friction[j].way = model::motion_of(slip(j));
+            mode_.friction[j].range = mechanics_.range_of(j, std::fabs(slip(j)));
+            slowest_ = std::min(slowest_, std::fabs(slip(j)));
+        }
+        frame_.emplace(given.system, mode_);
+        std::vector<double> offsets;
+        frame_->offsets(belts_, mode_, offsets);
+        for (std::size_t i = 0; i < bodies(); ++i) y_[bodies() + i] = offsets[i];
+        angles_ = y_;
+        mechanics_.let_laws_act(mode_);
+        // The deflections of bristles without slip and of slider springs follow their joints' angles.
+        for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) free_.push_back(2 * bodies() + k);
+        for (std::size_t b = 0; b < mechanics_.bristles().size(); ++b) {
+            const std::size_t joint = mechanics_.bristles()[b], k = 2 * bodies() + mechanics_.states_of_user() + b;
+            if (belts_[joint] == 0) {
+                bends_.emplace_back(k, joint);
+            } else {
+                free_.push_back(k);
+                slowest_ = std::min(slowest_, std::fabs(belts_[joint]));
+            }
+        }
+        for (const Mechanics::Slider& slider : mechanics_.sliders()) bends_.emplace_back(slider.bend, slider.joint);
+    }
+
+    std::size_t bodies() const { return mechanics_.bodies(); }
+    Eigen::Index groups() const { return static_cast<Eigen::Index>(frame_->groups()); }
+    Eigen::Index states() const { return static_cast<Eigen::Index>(free_.size()); }
+
+    /// Finds the state in which all accelerations and rates are zero.
+    [[nodiscard]] std::optional<text::Error> settle() {
+        constexpr int most = 60;
+        constexpr double nearly = 1e-11;
+        Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * groups() + states());
+        if (x.size() == 0) return holds();
+        for (int i = 0; i < most; ++i) {
+            press();
+            const Eigen::VectorXd rest = at(x);
+            if (!rest.allFinite()) return text::Error{"a torque is not finite beside the rest"};
+            Eigen::MatrixXd slopes = slopes_at(x);
+            slopes.middleCols(groups(), groups()).setZero();
+            const Eigen::VectorXd step = algebra::pseudo_inverse(slopes) * rest;
+            const double left = (rest - slopes * step).cwiseAbs().maxCoeff(), size = rest.cwiseAbs().maxCoeff();
+            if (left > 1e-6 * size && size > nearly * torque_scale()) {
+                return text::Error{"there is no rest: nothing holds the bodies against what acts on them"};
+            }
+            x -= step;
+            x.segment(groups(), groups()).setZero();
+            if (step.cwiseAbs().maxCoeff() <= nearly * std::max(1.0, x.cwiseAbs().maxCoeff())) {
+                y_ = state_at(x), angles_ = y_;
+                return holds();
+            }
+        }
+        return text::Error{"no rest was found near theta0"};
+    }
+
+    [[nodiscard]] std::vector<EigenMode> modes() {
+        const Eigen::Index G = groups(), m = states(), size = 2 * G + m;
+        if (size == 0) return {};
+        const Eigen::MatrixXd slopes = slopes_at(Eigen::VectorXd::Zero(size));
+        Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size, size);
+        A.block(0, G, G, G).setIdentity();
+        A.bottomRows(G + m) = slopes;
+        const algebra::Eigenpairs pairs = algebra::eigenpairs(A);
+        std::vector<EigenMode> all;
+        for (Eigen::Index k = 0; k < size; ++k) {
+            if (pairs.values(k).imag() < 0) continue;
+            EigenMode mode{pairs.values(k)};
+            std::complex<double> greatest = 0;
+            for (std::size_t i = 0; i < bodies(); ++i) {
+                std::complex<double> turned = 0;
+                for (const auto& [group, by] : frame_->bodies[i]) {
+                    turned += by * pairs.vectors(static_cast<Eigen::Index>(group), k);
+                }
+                mode.shape.push_back(turned);
+                if (std::abs(turned) > std::abs(greatest) * (1 + 1e-9)) greatest = turned;
+            }
+            for (auto& turned : mode.shape) turned = greatest == 0.0 ? 0 : turned / greatest;
+            all.push_back(std::move(mode));
+        }
+        std::sort(all.begin(), all.end(), [](const EigenMode& a, const EigenMode& b) {
+            return std::pair(a.value.imag(), a.value.real()) < std::pair(b.value.imag(), b.value.real());
+        });
+        return all;
+    }
+
+private:
+    [[nodiscard]] static Moment here(std::span<const double> y) { return {0, Side::after, y}; }
+    double slip(std::size_t joint) const {
+        return given_.system.joints[joint].sum(given_.drive.velocity0) - belts_[joint];
+    }
+    double torque_scale() const {
+        double most = std::numeric_limits<double>::min();
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) most = std::max(most, mechanics_.size_of(j, here(y_)));
+        return most;
+    }
+    void press() {
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const auto& stops = given_.system.joints[j].stops;
+            if (!stops) continue;
+            const double q = mechanics_.angle(j, angles_);
+            mode_.presses[j] = q > stops->upper ? 1 : q < stops->lower ? -1 : 0;
+        }
+    }
+    std::vector<double> state_at(const Eigen::VectorXd& x) const {
+        std::vector<double> y = y_;
+        for (std::size_t i = 0; i < bodies(); ++i) {
+            for (const auto& [group, by] : frame_->bodies[i]) {
+                y[i] += by * x(static_cast<Eigen::Index>(group));
+                y[bodies() + i] += by * x(groups() + static_cast<Eigen::Index>(group));
+            }
+        }
+        for (std::size_t k = 0; k < free_.size(); ++k) y[free_[k]] += x(2 * groups() + static_cast<Eigen::Index>(k));
+        for (const auto& [bend, joint] : bends_) {
+            y[bend] = y_[bend] + mechanics_.angle(joint, y) - mechanics_.angle(joint, y_);
+        }
+        return y;
+    }
+    /// Accelerations of the groups and rates of the states.
+    [[nodiscard]] Eigen::VectorXd at(const Eigen::VectorXd& x) {
+        const std::vector<double> y = state_at(x);
+        mechanics_.for_each_piecewise(0, [&](Piecewise& function) { function.decide(here(y), ~std::uint64_t{0}); });
+        mechanics_.loads_of_time(0, Side::after, loads_);
+        mechanics_.torques(here(y), mode_, belts_, loads_, torques_);
+        Eigen::VectorXd out = Eigen::VectorXd::Zero(groups() + states());
+        for (std::size_t i = 0; i < bodies(); ++i) {
+            for (const auto& [group, by] : frame_->bodies[i]) {
+                out(static_cast<Eigen::Index>(group)) += by * torques_[i] / frame_->inertia[group];
+            }
+        }
+        std::vector<double> rates(mechanics_.states());
+        mechanics_.rates(here(y), rates.data(), &mode_);
+        for (std::size_t k = 0; k < free_.size(); ++k) {
+            out(groups() + static_cast<Eigen::Index>(k)) = rates[free_[k] - 2 * bodies()];
+        }
+        return out;
+    }
+    /// The Jacobian by differences of fourth order; a linear system uses wide ones, which lose no digits.
+    [[nodiscard]] Eigen::MatrixXd slopes_at(const Eigen::VectorXd& x) {
+        constexpr double part = 1e-3;
+        const bool wide = !mechanics_.nonlinear();
+        Eigen::MatrixXd slopes(groups() + states(), x.size());
+        for (Eigen::Index c = 0; c < x.size(); ++c) {
+            const bool is_speed = c >= groups() && c < 2 * groups();
+            const double d = wide ? 1 : part * (is_speed ? std::min(1.0, slowest_) : 1);
+            const auto moved = [&](double by) {
+                Eigen::VectorXd there = x;
+                there(c) += by;
+                return at(there);
+            };
+            slopes.col(c) = (8 * (moved(d) - moved(-d)) - (moved(2 * d) - moved(-2 * d))) / (12 * d);
+        }
+        return slopes;
+    }
+    /// Checks that the holding joints can hold.
+    [[nodiscard]] std::optional<text::Error> holds() {
+        static_cast<void>(at(Eigen::VectorXd::Zero(2 * groups() + states())));
+        std::vector<double> lacking(bodies()), held(mechanics_.joints());
+        for (std::size_t i = 0; i < bodies(); ++i) lacking[i] = -torques_[i];
+        frame_->multipliers(lacking, held);
+        for (std::size_t j = 0; j < held.size(); ++j) {
+            if (!mode_.holds(j) || mode_.rigid[j] != 0) continue;
+            const double limit = mechanics_.holding(j, held[j] < 0 ? Motion::forward : Motion::backward, here(y_));
+            if (std::fabs(held[j]) <= limit * (1 + 1e-9)) continue;
+            const std::string& name = given_.system.joints[j].name;
+            return text::Error{
+                fmt::format("there is no rest: the friction{} would have to hold {:.6g}, but holds {:.6g}",
+                            name.empty() ? "" : " of " + name, std::fabs(held[j]), limit)};
+        }
+        return {};
+    }
+
+    const Moving& given_;
+    Asking asking_;
+    Mechanics mechanics_;
+    Mode mode_;
+    std::optional<Frame> frame_;
+    std::vector<double> belts_, y_, angles_, loads_, torques_;
+    std::vector<std::size_t> free_;                           ///< indices of the independent states
+    std::vector<std::pair<std::size_t, std::size_t>> bends_;  ///< indices of the other states, and their joints
+    double slowest_ = model::never;
+};
+
+}  // namespace
+
+text::Expected<std::vector<EigenMode>> modes_beside(const model::System& system, const model::Drive& drive) {
+    const Moving given(system, drive, 0, 1);
+    Beside beside(given);
+    if (auto wrong = beside.settle()) return *wrong;
+    return beside.modes();
 }
 
 }  // namespace dinal::motion::engine

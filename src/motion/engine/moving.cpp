@@ -33,7 +33,7 @@ public:
         return own.to - t > beside * own.h ? own.to : piece_at(own.to).second.to;
     }
     /// The longest distance of two samples between which a function is not proven to follow the series.
-    [[nodiscard]] double gap() const { return gap_; }
+    double gap() const { return gap_; }
 
 private:
     struct Piece {

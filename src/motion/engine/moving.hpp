@@ -21,7 +21,7 @@ struct Moving {
     Moving(const model::System& given, const model::Drive& asked, double start, double longest);
     /// The widest distance of two samples of a prescribed angle between which its motion is not proven, time units; 0
     /// if none.
-    [[nodiscard]] double gap() const;
+    double gap() const;
 
 private:
     std::vector<std::shared_ptr<const VelocityOfAngle>> velocities_;

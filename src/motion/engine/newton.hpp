@@ -28,7 +28,7 @@ public:
 
     /// Begins a stretch: slopes found for other groups, pressed walls or sliders are discarded.
     void begin(const Mode& mode, const Frame& frame);
-    [[nodiscard]] bool known() const { return known_; }
+    bool known() const { return known_; }
     void forget() { known_ = false; }
     /// Computes the derivatives of accelerations and rates with respect to angles, velocities and states at a node.
     /// Returns false if a value is not finite.
@@ -42,11 +42,11 @@ public:
         return (known_ || find(segment, mode, frame, 0, floor)) && factors(segment.h, frame).off > 0;
     }
     /// The relative error of the last step because its length differs by rounding from that of the matrix.
-    [[nodiscard]] double error_of_length(double h) const {
+    double error_of_length(double h) const {
         return std::fabs(last_factors_->first - h) / h * last_factors_->second.off;
     }
     /// Returns the derivatives; null if they belong to another frame.
-    [[nodiscard]] const Eigen::MatrixXd* slopes(const Frame& frame) const {
+    const Eigen::MatrixXd* slopes(const Frame& frame) const {
         const auto rows = static_cast<Eigen::Index>(frame.groups() + mechanics_.states());
         return of_ == frame.bodies && slopes_.rows() == rows ? &slopes_ : nullptr;
     }

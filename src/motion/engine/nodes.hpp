@@ -41,7 +41,7 @@ struct NodeTimes {
     double h = 0;            ///< half the length of the stretch
     bool from_break = false, to_break = false;
 
-    [[nodiscard]] Side side(std::size_t node) const {
+    Side side(std::size_t node) const {
         return node == 0 && from_break ? Side::after : node + 1 == node_count && to_break ? Side::before : Side::at;
     }
 };

@@ -14,9 +14,9 @@ namespace {
 class PartLeg final : public Leg {
 public:
     PartLeg(const JointLeg& leg, std::size_t joint) : leg_(leg), joint_(joint) {}
-    [[nodiscard]] double length() const override { return leg_.length(); }
-    [[nodiscard]] double since_start(double t) const override { return leg_.since_start(t); }
-    [[nodiscard]] Work work(double since_start) const override { return leg_.work(joint_, since_start); }
+    double length() const override { return leg_.length(); }
+    double since_start(double t) const override { return leg_.since_start(t); }
+    Work work(double since_start) const override { return leg_.work(joint_, since_start); }
 
 private:
     const JointLeg& leg_;
@@ -31,7 +31,7 @@ struct Place {
     Place(const model::System& system, std::size_t which) : bodies(system.bodies.size()), joint(which) {
         weights.of = system.joints[which].of;
     }
-    [[nodiscard]] model::State state(const std::vector<double>& y) const {
+    model::State state(const std::vector<double>& y) const {
         return {weights.sum(y), weights.sum(std::span(y).subspan(bodies))};
     }
 };
@@ -40,7 +40,7 @@ class PartCourse final : public Course {
 public:
     PartCourse(const model::Oscillator& seen, const Place& place, std::size_t states, const Run& run)
         : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.left->history) {}
-    [[nodiscard]] text::Expected<model::State> at(double t) const override {
+    text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
             return text::Error{fmt::format(
                 "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
@@ -51,18 +51,18 @@ public:
         if (const auto& walls = system().walls()) state.theta = std::clamp(state.theta, walls->lower, walls->upper);
         return state;
     }
-    [[nodiscard]] std::vector<double> states_at(double t) const override {
+    std::vector<double> states_at(double t) const override {
         const std::vector<double> y = history_->at(t);
         const auto first = y.begin() + static_cast<std::ptrdiff_t>(2 * place_.bodies);
         // the bristles' states come last and are left out
         return {first, first + static_cast<std::ptrdiff_t>(states_)};
     }
-    [[nodiscard]] double whole_until() const override { return history_->whole_until(); }
-    [[nodiscard]] std::vector<double> piece_ends() const override { return history_->ends(); }
+    double whole_until() const override { return history_->whole_until(); }
+    std::vector<double> piece_ends() const override { return history_->ends(); }
     void legs(const std::function<void(const Leg&)>& visit) const override {
         history_->legs_since(t_start_, [&](const JointLeg& leg) { visit(PartLeg(leg, place_.joint)); });
     }
-    [[nodiscard]] std::size_t bytes() const override { return history_->bytes(); }
+    std::size_t bytes() const override { return history_->bytes(); }
 
 private:
     Place place_;
@@ -160,6 +160,27 @@ Run part_of(const model::System& system, const model::Drive& drive, const Run& r
     part.computed = !system.is_link(joint);
     see(part, system, drive, joint, seen);
     return part;
+}
+
+Run run(const Problem& problem, const Cut& cut) {
+    const model::System system = model::as_system(problem.system);
+    const model::Drive& drive = problem.drive;
+    Run run = run_plain({.system = system,
+                         .drive = drive,
+                         .window = problem.window,
+                         .rows = problem.rows,
+                         .monitor = problem.monitor,
+                         .limits = problem.limits,
+                         .before = problem.left != nullptr ? problem.left->carry : nullptr,
+                         .tolerance = cut.tolerance,
+                         .longest = cut.longest,
+                         .step = cut.step,
+                         .pair = cut.pair,
+                         .keeps_torques = true,
+                         .history_bytes = problem.course_bytes,
+                         .joined_elsewhere = true});
+    complete(run, system, drive, problem.limits.dense ? std::optional(problem.system) : std::nullopt);
+    return run;
 }
 
 }  // namespace dinal::motion::engine

@@ -17,4 +17,7 @@ void complete(Run& run, const model::System& system, const model::Drive& drive,
 Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
             const std::optional<model::Oscillator>& seen);
 
+/// Runs a plain system with the general engine. The columns of the user's states follow the others.
+Run run(const Problem& problem, const Cut& cut);
+
 }  // namespace dinal::motion::engine

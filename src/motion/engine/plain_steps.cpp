@@ -20,7 +20,7 @@ struct Made {
     std::size_t m = 0;                                     ///< number of states
     std::vector<double> states{}, rates{};
 
-    [[nodiscard]] StepInterpolant between(std::size_t i, double h) const {
+    StepInterpolant between(std::size_t i, double h) const {
         return {h, y[i], accelerations[i], y[i + 1], accelerations[i + 1]};
     }
     /// Adds the work of part of a step, with M and friction as parabolas through their samples.
@@ -57,7 +57,7 @@ public:
     StepsOfRun(const StepTimes& steps, std::size_t n, std::size_t count, double damping)
         : steps_(steps), n_(n), count_(count), damping_(damping) {}
 
-    [[nodiscard]] std::vector<double> at(double since) const override {
+    std::vector<double> at(double since) const override {
         const double t = steps_.time(n_) + since, h = steps_.h;
         const std::size_t i = std::min(std::max(steps_.at(t), n_) - n_, count_ - 1);
         const auto made = first_steps(i + 1);
@@ -88,7 +88,7 @@ public:
     }
 
 protected:
-    [[nodiscard]] virtual std::shared_ptr<const Made> first_steps(std::size_t count) const = 0;
+    virtual std::shared_ptr<const Made> first_steps(std::size_t count) const = 0;
 
     StepTimes steps_;
     std::size_t n_, count_;
@@ -100,12 +100,12 @@ class StepsKept final : public StepsOfRun {
 public:
     StepsKept(const StepTimes& steps, std::size_t n, std::size_t count, double damping, Made made)
         : StepsOfRun(steps, n, count, damping), made_(std::make_shared<const Made>(std::move(made))) {}
-    [[nodiscard]] std::size_t bytes() const override {
+    std::size_t bytes() const override {
         return sizeof(*this) + sizeof(Made) + (count_ + 1) * (7 + 2 * made_->m) * sizeof(double);
     }
 
 private:
-    [[nodiscard]] std::shared_ptr<const Made> first_steps(std::size_t /*count*/) const override { return made_; }
+    std::shared_ptr<const Made> first_steps(std::size_t /*count*/) const override { return made_; }
 
     std::shared_ptr<const Made> made_;
 };
@@ -129,12 +129,12 @@ public:
         const auto* samples = block.samples.data();
         samples_.assign(samples + 2 * first, samples + 2 * last);
     }
-    [[nodiscard]] std::size_t bytes() const override {
+    std::size_t bytes() const override {
         return sizeof(*this) + (samples_.size() + 2 * states_.size()) * sizeof(double);
     }
 
 private:
-    [[nodiscard]] std::shared_ptr<const Made> first_steps(std::size_t count) const override {
+    std::shared_ptr<const Made> first_steps(std::size_t count) const override {
         AffineBlock block(map_, inertia_);
         if (samples_.empty()) {
             block.sample(M_, steps_, n_, count);

@@ -31,17 +31,17 @@ public:
         Recorder& recorder;
     };
     /// Returns whether plain steps are possible from here.
-    [[nodiscard]] bool may_begin(const Now& now) const;
+    bool may_begin(const Now& now) const;
     /// Takes steps that end before `until`. Returns whether it took any.
     bool take(const Of& of, double until);
     /// Returns the longest time between two samples of M.
-    [[nodiscard]] double gap() const { return steps_.h / 2; }
+    double gap() const { return steps_.h / 2; }
 
 private:
     std::size_t move(const Of& of, std::size_t begin, std::size_t stop, model::Motion way);
     bool turn(const Of& of, std::size_t n, std::size_t i);
     std::size_t rest(const Of& of, std::size_t begin, std::size_t stop);
-    [[nodiscard]] bool clear_of_walls(std::size_t i, double reach) const;
+    bool clear_of_walls(std::size_t i, double reach) const;
     [[nodiscard]] bool is_calm(const Of& of, std::size_t first, std::size_t last);
     std::size_t calm_until(const Of& of, std::size_t first, std::size_t last);
     std::size_t rows(const Of& of, std::size_t n, std::size_t first, std::size_t last, bool stands);
@@ -57,8 +57,8 @@ private:
     bool begin_functions(const Of& of, std::size_t i);
     bool step_functions(const Of& of, std::size_t i, double direction);
     void step_states(std::size_t i);
-    [[nodiscard]] double time(std::size_t i) const { return steps_.time(sampled_.from + i); }
-    [[nodiscard]] double acceleration(std::size_t i, const model::State& y) const {
+    double time(std::size_t i) const { return steps_.time(sampled_.from + i); }
+    double acceleration(std::size_t i, const model::State& y) const {
         return affine_ ? block_.acceleration(i, y) : accelerations_[i];
     }
     [[nodiscard]] double* states(std::size_t i) { return states_.data() + i * m_; }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "motion/engine/crossing.hpp"
@@ -307,8 +306,8 @@ void Recorder::finish(const Now& now, const Contacts& contacts, std::shared_ptr<
 }
 
 /// Returns the torques at each joint over the stretch.
-std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segment) {
-    std::vector<Kept::Acting> all(mechanics_.joints());
+std::vector<Kept::JointTorques> Recorder::acting(const Now& now, const Segment& segment) {
+    std::vector<Kept::JointTorques> all(mechanics_.joints());
     for (std::size_t j = 0; j < all.size(); ++j) {
         all[j].M = segment.driven[j];
         // Functions of the motion were last evaluated before the final step of the iteration.
@@ -340,7 +339,8 @@ std::vector<Kept::Acting> Recorder::acting(const Now& now, const Segment& segmen
 }
 
 /// Adds the torques of sticking sliders' springs and pressed walls, which store energy.
-void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const {
+void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t joint,
+                           Kept::JointTorques& acting) const {
     acting.presses = now.mode.presses[joint] != 0;
     if (!acting.presses && now.mode.sliders.empty()) return;
     Nodes springs{};
@@ -361,7 +361,7 @@ void Recorder::add_springs(const Now& now, const Segment& segment, std::size_t j
     if (greatest(springs) > 0) acting.springs = std::make_unique<Nodes>(springs);
 }
 
-void Recorder::add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) {
+void Recorder::add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::JointTorques& acting) {
     if (acting.holds) {
         acting.friction = segment.holding[joint];
     } else if (mechanics_.is_native(joint) && now.rubs(joint) && now.mode.leans[joint] == 0) {

@@ -33,9 +33,7 @@ public:
     }
     /// Reports a user's event, once for each joint with the joint's angle and velocity.
     void tell_user(const Now& now, std::size_t event);
-    [[nodiscard]] bool told_user_at(double t) const {
-        return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
-    }
+    bool told_user_at(double t) const { return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t; }
     /// Reports that a load, or the rate of a state (for all joints), begins or ends to slide along a condition. A begin
     /// and an end at the same instant cancel, and a continued run does not report a begin at its start.
     void tell_slide(const Now& now, const SlideChange& change);
@@ -46,7 +44,7 @@ public:
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
 
     /// The direction of motion of each body without dry friction.
-    [[nodiscard]] const std::vector<model::Motion>& heading() const { return heading_; }
+    const std::vector<model::Motion>& heading() const { return heading_; }
     void head(std::size_t body, double velocity) { heading_[body] = model::motion_of(velocity); }
     void go_on_with(const std::vector<model::Motion>& heading) { heading_ = heading; }
 
@@ -55,8 +53,8 @@ public:
     bool rows_until(const Stretch& of, double end, bool to_the_end);
     /// Writes the rows of the present at the end of a run.
     bool rows_at_end(const Stretch& of);
-    [[nodiscard]] std::size_t next_row() const { return next_row_; }
-    [[nodiscard]] double next_row_time() const {
+    std::size_t next_row() const { return next_row_; }
+    double next_row_time() const {
         return next_row_ < problem_.rows.count() ? problem_.rows.time(next_row_) : model::never;
     }
     /// Writes the row of a plain step of one body.
@@ -67,7 +65,7 @@ public:
     void keep(const Now& now, const Segment& segment, double length, double longest_delay);
     void keep(Kept kept) { history_->add(std::move(kept), true, model::never); }
     void add_jump(double t, std::size_t joint, const Work& work) { history_->add_jump(t, joint, work); }
-    [[nodiscard]] const std::shared_ptr<History>& history() const { return history_; }
+    const std::shared_ptr<History>& history() const { return history_; }
 
     // Beginning and end.
     void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
@@ -79,19 +77,18 @@ private:
     void write_recent();
     /// Writes the row at the point x of the segment; x = -2 means the present.
     bool put_row(const Stretch& of, double t, double x);
-    [[nodiscard]] double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
-    [[nodiscard]] double held_by_load(const Now& now, std::size_t joint, const Moment& at,
-                                      const Balance& balance) const;
-    std::vector<Kept::Acting> acting(const Now& now, const Segment& segment);
-    void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting) const;
-    void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::Acting& acting);
+    double friction(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
+    double held_by_load(const Now& now, std::size_t joint, const Moment& at, const Balance& balance) const;
+    std::vector<Kept::JointTorques> acting(const Now& now, const Segment& segment);
+    void add_springs(const Now& now, const Segment& segment, std::size_t joint, Kept::JointTorques& acting) const;
+    void add_friction(const Now& now, const Segment& segment, std::size_t joint, Kept::JointTorques& acting);
     void record_turns(std::size_t body, const Segment& segment, double until, double nothing, SampledLoads& sampled,
                       std::vector<model::Event>& turns);
 
-    [[nodiscard]] std::size_t n() const { return mechanics_.bodies(); }
+    std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    [[nodiscard]] std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
-    [[nodiscard]] std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
+    std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
 
     const Request& problem_;
     const Mechanics& mechanics_;

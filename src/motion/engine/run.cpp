@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <utility>
 
 #include "model/springs/user_spring.hpp"
 #include "motion/engine/collocation.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "motion/engine/left.hpp"
+#include "motion/engine/history.hpp"
 #include "motion/run.hpp"
 #include "motion/simulate.hpp"
 
@@ -35,7 +35,7 @@ struct Request {
     bool joined_elsewhere = false;  ///< whether the caller joins continued runs and decides about rest
 
     /// The same request for another system and its drive, which must outlive it.
-    [[nodiscard]] Request on(const model::System& other, const model::Drive& its) const {
+    Request on(const model::System& other, const model::Drive& its) const {
         return {.system = other,
                 .drive = its,
                 .window = window,

@@ -12,18 +12,16 @@ public:
     /// Uses the classical method with this step, or the pair if it is not null.
     RungeKutta(const Mechanics& mechanics, double tolerance, double longest, double step, const Pair* pair)
         : Flow(mechanics, tolerance, longest), step_(step), pair_(pair) {}
-    [[nodiscard]] double gap(const Segment& segment) const override {
-        return pair_ == nullptr ? segment.h : Flow::gap(segment);
-    }
+    double gap(const Segment& segment) const override { return pair_ == nullptr ? segment.h : Flow::gap(segment); }
 
 private:
     Attempt find(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& departing) override;
     Attempt accept(Segment& segment, const Mode& mode, const Frame& frame) override;
-    [[nodiscard]] bool follows_rates() const override { return false; }
+    bool follows_rates() const override { return false; }
 
     template <class Rates>
     bool find_stages(Segment& segment, const Rates& rates, std::vector<double>& change);
-    [[nodiscard]] double error_of_step(const Segment& segment, const Frame& frame) const;
+    double error_of_step(const Segment& segment, const Frame& frame) const;
 
     double step_;
     const Pair* pair_;

@@ -33,8 +33,8 @@ struct Segment : NodeTimes {
     /// The holding limits of each sticking joint whose limits vary, backward and forward.
     std::vector<std::array<Nodes, 2>> limits{};
 
-    [[nodiscard]] double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }
-    [[nodiscard]] double at(std::size_t k, double x) const {
+    double time(double x) const { return x >= 1 ? end : start.after(h * (1 + x)); }
+    double at(std::size_t k, double x) const {
         return x >= 1 ? y[k][node_count - 1] : x <= -1 ? y[k][0] : y[k][0] + cheb::value(series[k], x);
     }
     /// Stores all of y at the point x in `out`.

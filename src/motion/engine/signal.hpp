@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -17,13 +16,25 @@
 #include <utility>
 #include <vector>
 
+#include "model/bounds.hpp"
 #include "model/controller.hpp"
 #include "model/formula.hpp"
 #include "model/system.hpp"
 #include "motion/engine/nodes.hpp"
-#include "motion/engine/ranges.hpp"
 
 namespace dinal::motion::engine {
+
+/// Bounds of a motion over some steps, and of formulas on it.
+struct Ranges {
+    model::bounds::Interval t;
+    std::vector<model::bounds::Interval> y{};  ///< ranges of all entries of y
+
+    /// The range of the formula, on its piece if given, or of the quantity that decides `condition`; empty if unknown.
+    /// `named`: the formula receives all of y as states.
+    std::optional<model::bounds::Interval> of(const model::Formula* formula, const model::terms::Piece* piece,
+                                              bool named, double delay = 0,
+                                              std::optional<std::size_t> condition = {}) const;
+};
 
 /// One moment of a run; y has all angles, all velocities, and then the user's states.
 struct Moment {
@@ -40,19 +51,15 @@ struct Asking {
     /// Returns the motion at an earlier time, for delayed terms.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
-    [[nodiscard]] double ask(model::UserFunction& function, const Moment& at) const {
+    double ask(model::UserFunction& function, const Moment& at) const {
         return ask_at(function, towards(at.t, at.side), at.y);
     }
-    [[nodiscard]] double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
+    double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
         if (y.empty()) return function.value(t, {});  // depends on time only
         return function.value_with(t, state(y), states(y));
     }
-    [[nodiscard]] model::State state(std::span<const double> y) const {
-        return named ? model::State{} : model::State{y[0], y[1]};
-    }
-    [[nodiscard]] std::span<const double> states(std::span<const double> y) const {
-        return y.first(told).subspan(named ? 0 : 2);
-    }
+    model::State state(std::span<const double> y) const { return named ? model::State{} : model::State{y[0], y[1]}; }
+    std::span<const double> states(std::span<const double> y) const { return y.first(told).subspan(named ? 0 : 2); }
 };
 
 /// A user's function of the motion. If its conditions are known, it is evaluated on the current piece.
@@ -91,22 +98,20 @@ public:
         std::array<model::terms::Piece, 2> apart{};  ///< both pieces with these other conditions only
     };
 
-    [[nodiscard]] bool has_pieces() const { return has_pieces_; }
-    [[nodiscard]] bool is_friction() const { return law_ && !law_->of_angle; }
-    [[nodiscard]] bool is_spring() const { return law_ && law_->of_angle; }
-    [[nodiscard]] bool is_held() const { return piece_.owner != nullptr; }
+    bool has_pieces() const { return has_pieces_; }
+    bool is_friction() const { return law_ && !law_->of_angle; }
+    bool is_spring() const { return law_ && law_->of_angle; }
+    bool is_held() const { return piece_.owner != nullptr; }
     /// The next time at which the formula changes.
-    [[nodiscard]] double next_break(double t) const {
-        return law_ && law_->alone ? model::never : function_->next_break(t);
-    }
-    [[nodiscard]] double value(const Moment& at) const {
+    double next_break(double t) const { return law_ && law_->alone ? model::never : function_->next_break(t); }
+    double value(const Moment& at) const {
         if (slide_) return sliding(at);
         if (law_) return value(at, law_->way * law_->slip(at));
         if (piece_.conditions.empty() || at.freely) return asking_->ask_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
-    [[nodiscard]] double value(const Moment& at, double speed) const {
+    double value(const Moment& at, double speed) const {
         return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             const bool on_piece = is_held() && (law_->of_angle ? !at.freely : speed != 0);
             return on_piece ? function_->value_on(piece_, t, state, states, nullptr)
@@ -128,7 +133,7 @@ public:
             function_->decide(piece_, t, state, states, again);
         });
     }
-    [[nodiscard]] const std::vector<model::terms::Piece::Condition>& conditions() const {
+    const std::vector<model::terms::Piece::Condition>& conditions() const {
         return slide_ ? slide_->conditions : piece_.conditions;
     }
     /// Computes margins that are positive while each condition keeps its decision.
@@ -141,16 +146,14 @@ public:
     }
     /// Returns whether a comparison or sign condition certainly keeps its decision while the motion is within these
     /// ranges.
-    [[nodiscard]] bool keeps(std::size_t condition, const Ranges& ranges, bool named) const;
-    [[nodiscard]] double decision(std::size_t step) const { return piece_.decisions[step]; }
+    bool keeps(std::size_t condition, const Ranges& ranges, bool named) const;
+    double decision(std::size_t step) const { return piece_.decisions[step]; }
     void cross(std::size_t condition) { piece_.cross(condition), crossed_ = true; }
     void let_go() { piece_ = {}, slide_ = nullptr; }
     /// The current piece, or nullptr.
-    [[nodiscard]] const model::terms::Piece* piece() const {
-        return slide_ ? slide_->apart.data() : is_held() ? &piece_ : nullptr;
-    }
+    const model::terms::Piece* piece() const { return slide_ ? slide_->apart.data() : is_held() ? &piece_ : nullptr; }
     /// The piece beyond the condition that it slides along, or nullptr.
-    [[nodiscard]] const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
+    const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
 
     /// Starts to slide along the first condition that differs between two moments on either side of it and depends on
     /// these arguments only. The share must be set. Returns false if there is none.
@@ -158,29 +161,28 @@ public:
     /// Also watches the other conditions. A condition counts as the same surface if its margin is below `near` and
     /// changes from one side to the other.
     void watch_others(const Moment& one_side, const Moment& other_side, double near);
-    [[nodiscard]] bool slides() const { return slide_ != nullptr; }
+    bool slides() const { return slide_ != nullptr; }
     [[nodiscard]] Slide& sliding() { return *slide_; }
     /// Ends the slide at the crossed condition: 0 or 1 for a limit of the fraction, otherwise a condition of both
     /// sides.
     void leave(std::size_t condition);
     /// The margin of the condition along which it slides, and the rate of this margin for the given rates of y.
-    [[nodiscard]] std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
+    std::pair<double, double> margin(const Moment& at, std::span<const double> rates) const;
     /// The second derivative of this margin, if it depends on time and angles only, of which y has `angles`; `stretch`
     /// is a short time.
-    [[nodiscard]] double margin_bend(const Moment& at, std::span<const double> rates, std::size_t angles,
-                                     double stretch) const;
+    double margin_bend(const Moment& at, std::span<const double> rates, std::size_t angles, double stretch) const;
 
 private:
-    [[nodiscard]] double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
+    double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
         return called(at, law_ ? law_->way * law_->slip(at) : 0,
                       [&](double t, const model::State& state, std::span<const double> states) {
                           return function_->value_on(piece, t, state, states, margins);
                       });
     }
-    [[nodiscard]] double margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const;
-    [[nodiscard]] double sliding(const Moment& at) const;
+    double margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const;
+    double sliding(const Moment& at) const;
     void sliding_margins(const Moment& at, std::vector<double>& out) const;
-    [[nodiscard]] double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
+    double time(const Moment& at) const { return towards(at.t - delay_, at.side); }
     /// Calls `call` with the function's arguments: t, or the speed alone; the state; the states.
     template <class F>
     std::invoke_result_t<F, double, const model::State&, std::span<const double>> called(const Moment& at, double speed,
@@ -208,44 +210,44 @@ public:
     Signal() = default;
     Signal(const model::Excitation& excitation, const Asking* asking);
 
-    [[nodiscard]] bool none() const { return parts_.empty(); }
+    bool none() const { return parts_.empty(); }
     /// Returns whether some function depends on the motion.
-    [[nodiscard]] bool asks_the_motion() const { return asks_the_motion_; }
+    bool asks_the_motion() const { return asks_the_motion_; }
     /// Returns whether some function is known only at sampled points.
-    [[nodiscard]] bool asks_functions() const { return asks_functions_; }
+    bool asks_functions() const { return asks_functions_; }
     /// Returns whether some function may change at any time, also while the motion does not.
-    [[nodiscard]] bool asks_in_time() const { return asks_in_time_; }
-    [[nodiscard]] bool has_script() const { return excitation_.has_script(); }
+    bool asks_in_time() const { return asks_in_time_; }
+    bool has_script() const { return excitation_.has_script(); }
     /// Returns whether it is a user's function of time alone, which its series on a stretch represents.
-    [[nodiscard]] bool is_sampled() const { return asks_in_time_ && of_time_only_; }
-    [[nodiscard]] double value(const Moment& at) const { return of_time(at) + of_motion(at); }
+    bool is_sampled() const { return asks_in_time_ && of_time_only_; }
+    double value(const Moment& at) const { return of_time(at) + of_motion(at); }
     /// The part that depends on time only, including controllers that hold a value.
-    [[nodiscard]] double of_time(const Moment& at) const {
+    double of_time(const Moment& at) const {
         if (!of_time_only_) return sum(at, false);
         if (at.t != asked_last_.t || at.side != asked_last_.side) asked_last_ = {at.t, at.side, sum(at, false)};
         return asked_last_.M;
     }
-    [[nodiscard]] double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
+    double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
     /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
     void sample(const NodeTimes& when, Nodes& out) const;
     /// Keeps the series of sampled functions of a resolved stretch, if it has decayed to `tolerance`. A next stretch
     /// that begins within it evaluates the series up to its end instead of calling the functions again.
     void keep(const NodeTimes& when, double tolerance) const;
-    [[nodiscard]] double kept_until() const { return sampled_ == nullptr ? -model::never : sampled_->until; }
+    double kept_until() const { return sampled_ == nullptr ? -model::never : sampled_->until; }
 
-    [[nodiscard]] double next_break(double t) const;
-    [[nodiscard]] double view(double t, double spacing) const { return excitation_.view(t, spacing); }
-    [[nodiscard]] double constant_from() const { return excitation_.constant_from(); }
+    double next_break(double t) const;
+    double view(double t, double spacing) const { return excitation_.view(t, spacing); }
+    double constant_from() const { return excitation_.constant_from(); }
     /// Returns whether it can be evaluated between neighbouring times.
-    [[nodiscard]] bool tells_rests() const { return excitation_.tells_rests(); }
+    bool tells_rests() const { return excitation_.tells_rests(); }
     /// An upper bound of its magnitude.
-    [[nodiscard]] double most() const {
+    double most() const {
         return asks_the_motion_ || model::has_memory(excitation_) ? model::never : excitation_.most();
     }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
-    [[nodiscard]] const std::vector<double>& delays() const { return delays_; }
+    const std::vector<double>& delays() const { return delays_; }
     /// Returns whether all its functions, except controllers that hold a value, are formulas with known breaks.
-    [[nodiscard]] bool is_read() const {
+    bool is_read() const {
         return std::all_of(parts_.begin(), parts_.end(), [](const Part& part) {
             if (part.function == nullptr) return part.delayed == nullptr;
             const model::Formula* read = part.function->function->read();
@@ -278,7 +280,7 @@ public:
         }
     }
     /// Returns whether some function of the motion has unknown pieces.
-    [[nodiscard]] bool samples_the_motion() const {
+    bool samples_the_motion() const {
         return std::any_of(parts_.begin(), parts_.end(),
                            [](const Part& part) { return part.piecewise && !part.piecewise->has_pieces(); });
     }
@@ -299,14 +301,14 @@ public:
     void call_unread(const Moment& at) const;
 
     // Controllers.
-    [[nodiscard]] bool has_sampled() const {
+    bool has_sampled() const {
         return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.sampled != nullptr; });
     }
     /// Starts a run.
     void begin(const Moment& at, const std::vector<std::string>& names);
     /// Applies pending outputs and sampling instants at the time of `at`. Returns false if one failed.
     bool arrive(const Moment& at);
-    [[nodiscard]] std::size_t relays() const { return relays_.size(); }
+    std::size_t relays() const { return relays_.size(); }
     /// Visits the functions of relays that have one.
     template <class F>
     void for_each_relay_function(F f) const {
@@ -319,20 +321,20 @@ public:
         double sign, level;
         std::optional<std::size_t> place;  ///< index of the input in y; none: a function
     };
-    [[nodiscard]] Switching switching(std::size_t relay) const;
+    Switching switching(std::size_t relay) const;
     /// The watched value of the relay: positive until it must switch.
-    [[nodiscard]] double until_switch(std::size_t relay, const Moment& at) const;
+    double until_switch(std::size_t relay, const Moment& at) const;
     void toggle(std::size_t relay) { memory_[relays_[relay]].on = !memory_[relays_[relay]].on; }
 
     struct Memory {
         double output = 0;
         std::deque<std::pair<double, double>> pending{};  ///< pairs of time and output
         std::int64_t instant = 0;
-        bool on = true;                               ///< level of a relay
-        std::optional<std::size_t> place{};           ///< index in y of a relay's input
-        std::shared_ptr<model::terms::Memory> own{};  ///< memory of a sampled function
+        bool on = true;                                       ///< level of a relay
+        std::optional<std::size_t> place{};                   ///< index in y of a relay's input
+        std::shared_ptr<model::terms::FunctionMemory> own{};  ///< memory of a sampled function
     };
-    [[nodiscard]] const std::vector<Memory>& memory() const { return memory_; }
+    const std::vector<Memory>& memory() const { return memory_; }
     /// Restores the memory of an earlier run, with copies, as that run may be continued again.
     void remember(const std::vector<Memory>& memory) {
         memory_ = memory;
@@ -349,8 +351,8 @@ private:
         bool of_motion = false;
         std::optional<Piecewise> piecewise = {};
     };
-    [[nodiscard]] double sum(const Moment& at, bool of_motion) const;
-    [[nodiscard]] double value_of(std::size_t i, const Moment& at) const;
+    double sum(const Moment& at, bool of_motion) const;
+    double value_of(std::size_t i, const Moment& at) const;
 
     model::Excitation excitation_;
     const Asking* asking_ = nullptr;

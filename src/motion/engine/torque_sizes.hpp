@@ -14,13 +14,13 @@ class TorqueSizes {
 public:
     void find(const Mechanics& mechanics, const Segment& last, const Moment& at);
     /// Returns the magnitude of the torques on a joint's bodies, as torques on its angle.
-    [[nodiscard]] double on(const model::Joint& joint) const {
+    double on(const model::Joint& joint) const {
         double size = 0;
         for (const auto& [body, by] : joint.of) size += of_bodies_[body] / std::fabs(by);
         return size;
     }
 
-    [[nodiscard]] double on_body(std::size_t body) const { return of_bodies_[body]; }
+    double on_body(std::size_t body) const { return of_bodies_[body]; }
 
 private:
     void pass_on(const model::System& system);

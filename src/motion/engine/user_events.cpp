@@ -11,7 +11,7 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
     // zeros that count as events, and zeros in the other direction, which only change the half
     std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;
     for (std::size_t e = 0; e < watches_.size(); ++e) {
-        const model::Crossing direction = wanted_[e].direction;
+        const model::Direction direction = wanted_[e].direction;
         Watch& watch = watches_[e];
         const auto when = [&](const Moment& at) { return value(e, at); };
         Nodes values = segment.at_nodes(when, point_);
@@ -29,7 +29,7 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
         while (const auto x = curve.leaves(half, from)) {
             if (!(place(*x) < before)) break;
             if (watch.sent_back && !curve.is_clearly(half, *x)) return {.again = e};
-            if (direction == model::Crossing::both || (half < 0) == (direction == model::Crossing::up)) {
+            if (direction == model::Direction::both || (half < 0) == (direction == model::Direction::up)) {
                 wanted_ones.emplace_back(e, place(*x));
                 break;
             }
@@ -136,8 +136,8 @@ std::vector<std::size_t> UserEvents::passing(const Now& now, const Segment& last
     for (const Watch& watch : watches_) came_from_.push_back(watch.half);
     for (std::size_t e = 0; e < watches_.size(); ++e) {
         const Half half = watches_[e].half;
-        const bool wanted = wanted_[e].direction == model::Crossing::both ||
-                            (half < 0) == (wanted_[e].direction == model::Crossing::up);
+        const bool wanted = wanted_[e].direction == model::Direction::both ||
+                            (half < 0) == (wanted_[e].direction == model::Direction::up);
         if (half == 0 || !wanted) continue;
         const double own = value(e, now.here());
         const double soon = value(e, {now.t.hi * ulps, Side::at, now.y});

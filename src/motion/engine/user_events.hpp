@@ -1,14 +1,13 @@
 // The user's events: functions of the motion whose zeros are located.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/crossing.hpp"
 #include "motion/engine/ending.hpp"
-#include "motion/engine/ranges.hpp"
+#include "motion/engine/signal.hpp"
 
 namespace dinal::motion::engine {
 
@@ -18,7 +17,7 @@ public:
     UserEvents(const Mechanics& mechanics, const std::vector<model::WantedEvent>& wanted)
         : mechanics_(mechanics), wanted_(wanted), watches_(wanted.size()) {}
 
-    [[nodiscard]] const std::vector<Watch>& watches() const { return watches_; }
+    const std::vector<Watch>& watches() const { return watches_; }
     void go_on_with(const std::vector<Watch>& watches) { watches_ = watches; }
 
     struct Seen {
@@ -36,7 +35,7 @@ public:
     /// Returns the events that pass zero at the present, within rounding.
     [[nodiscard]] std::vector<std::size_t> passing(const Now& now, const Segment& last, double h, Balances& balances,
                                                    const Frame& frame);
-    [[nodiscard]] std::vector<double> values(const Moment& at) const;
+    std::vector<double> values(const Moment& at) const;
     /// Prepares for the actions of these events.
     void pass(const std::vector<std::size_t>& events);
     /// Sets the side of each value after actions, which may move values across zero without an event. If a reported
@@ -49,8 +48,8 @@ public:
     [[nodiscard]] bool fades(std::size_t event, double t) { return watches_[event].fading.after(t); }
 
 private:
-    [[nodiscard]] double value(std::size_t event, const Moment& at) const { return mechanics_.when(event, at); }
-    [[nodiscard]] double rounding_of(std::size_t event, const Now& now) const;
+    double value(std::size_t event, const Moment& at) const { return mechanics_.when(event, at); }
+    double rounding_of(std::size_t event, const Now& now) const;
     [[nodiscard]] bool passes_on(std::size_t event, const Now& now, const Segment& last, double h, Balances& balances,
                                  const Frame& frame);
 

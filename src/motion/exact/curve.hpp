@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "motion/exact/free_motion.hpp"
+#include "text/not_copied.hpp"
 
 namespace dinal::motion::exact {
 
@@ -39,7 +40,7 @@ struct Resonance {
     double fourth_growing = 0, fourth_turning = 0;  ///< bounds for the fourth derivative
 
     /// g(tau), given exp(lambda tau).
-    [[nodiscard]] Complex difference(double tau, Complex root_turned) const {
+    Complex difference(double tau, Complex root_turned) const {
         const Complex z = from_root * tau;
         const double size = length_of(z);
         if (size == 0) return tau * root_turned;
@@ -56,11 +57,9 @@ struct Resonance {
     }
 };
 
-class WalkedCurve {
+class WalkedCurve : text::NotCopied {
 public:
     explicit WalkedCurve(const LinearMotion& free);
-    WalkedCurve(const WalkedCurve&) = delete;
-    WalkedCurve& operator=(const WalkedCurve&) = delete;
 
     struct Value {
         double f = 0, slope = 0;
@@ -110,18 +109,18 @@ public:
         asked_.set(*next_, next_place_);
         return derive(there_);
     }
-    [[nodiscard]] bool asked_ahead() const { return asked_.values != &other_; }
+    bool asked_ahead() const { return asked_.values != &other_; }
     /// Moves the point of way() by this much from the last point of jet().
     void step_aside(double further) { asked_.aside = further; }
     /// For a velocity: its integral from the start to the last point of at() or jet().
-    [[nodiscard]] double way() const;
+    double way() const;
 
     // The walk.
-    [[nodiscard]] double place() const { return place_; }
-    [[nodiscard]] const Value& here() const { return here_; }
+    double place() const { return place_; }
+    const Value& here() const { return here_; }
     /// look() looks ahead by the length of a level, look_at() to any time; accept_look() moves there.
     static constexpr int levels = 40;
-    [[nodiscard]] double length(int level) const { return table_.longest * halved[static_cast<std::size_t>(level)]; }
+    double length(int level) const { return table_.longest * halved[static_cast<std::size_t>(level)]; }
     const Value& look(int level) {
         std::uint8_t& slot = table_.of_levels[static_cast<std::size_t>(level)];
         if (slot == none) slot = new_turn(length(level));
@@ -140,30 +139,30 @@ public:
     }
     /// h^4/384 for a look of this level. Times max|f''''| it bounds the distance from the Hermite cubic through both
     /// ends.
-    [[nodiscard]] double hides(int level) const {
+    double hides(int level) const {
         const double square = length(level) * length(level);
         return square * square * (1.0 / 384);
     }
     /// A bound of |f''''| from here to `until`.
-    [[nodiscard]] double fourth_bound(double until) const {
+    double fourth_bound(double until) const {
         const double bound = sum_.has_free ? sines_fourth_ + free_.fourth_bound(now_->free) : sines_fourth_;
         return may_grow() ? bound + growing_bound(until) : bound;
     }
     /// Returns whether that bound grows with `until`.
-    [[nodiscard]] bool may_grow() const { return !only_swings_; }
+    bool may_grow() const { return !only_swings_; }
     /// An estimate of the rate at which higher derivatives grow.
-    [[nodiscard]] double fastest() const {
+    double fastest() const {
         if (sum_.powers.size() > jet_order + 1) return too_fast;
         return fastest_;
     }
     /// A bound of the sixth derivative, given one of the fourth. Near resonance the sixth derivative has six products
     /// of five factors each, the fourth derivative four of three.
-    [[nodiscard]] double sixth_bound(double fourth_bound) const {
+    double sixth_bound(double fourth_bound) const {
         if (sum_.powers.size() > 6) return too_fast;
         return fourth_bound * fastest_ * fastest_ * (sum_.resonances.empty() ? 1 : 2);
     }
     /// The magnitude of the terms of the sum, from here to `until`.
-    [[nodiscard]] double size(double until) const;
+    double size(double until) const;
 
 private:
     static constexpr double too_fast = std::numeric_limits<double>::infinity();
@@ -244,10 +243,10 @@ private:
 
         void set(const PartValues& there, double tau) { aside = 0, values = &there, place = tau; }
         /// The integral from there to the point aside.
-        [[nodiscard]] double further_way() const;
+        double further_way() const;
     };
 
-    [[nodiscard]] bool same_resonances() const;
+    bool same_resonances() const;
     void make_table();
     std::uint8_t new_turn(double tau);
     void make_turn(double tau, Turn& to);
@@ -288,8 +287,8 @@ private:
         return y;
     }
     void turn_others(const PartValues& from, const Turn& by, PartValues& to, double place, Value& y) const;
-    [[nodiscard]] Value powers(double tau) const;
-    [[nodiscard]] double growing_bound(double until) const;
+    Value powers(double tau) const;
+    double growing_bound(double until) const;
     const Jet& derive(const Value& y);
     void derive_others(std::size_t from, std::size_t to);
 

@@ -14,8 +14,8 @@ struct Exact {
     /// Returns whether arcs must be short: a strongly damped motion under lines or powers of t, which it follows with a
     /// delay.
     [[nodiscard]] static bool goes_slowly(const model::Oscillator& system, const model::Excitation& excitation);
-    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
-    [[nodiscard]] Run run(const Problem& problem) const;
+    Resolution resolution(const model::Oscillator& system) const;
+    Run run(const Problem& problem) const;
 };
 
 inline constexpr MethodText Exact::about{

@@ -10,13 +10,70 @@
 
 #include "model/closed_form.hpp"
 #include "motion/exact/arc.hpp"
-#include "motion/exact/arcs.hpp"
 #include "motion/exact/first_exit.hpp"
-#include "motion/exact/lines.hpp"
+#include "motion/exact/free_motion.hpp"
 #include "motion/lone_contact.hpp"
 #include "motion/rows.hpp"
 
 namespace dinal::motion::exact {
+
+/// The motion under a torque that is linear in time, over a short time: one line of a record of samples.
+/// I q'' + C q' + k q = pull + slope t with q(0) = 0: linear in the initial velocity, pull and slope. Caches the
+/// factors for one length, because records are usually sampled evenly.
+class LineStep {
+public:
+    LineStep(const model::Lowered& system, const LinearMotion& free)
+        : inertia_(system.inertia()),
+          damping_(system.damping()),
+          stiffness_(system.stiffness()),
+          per_inertia_(1 / inertia_),
+          per_w0_(1 / free.w0()),
+          longest_(short_of / free.fastest()) {}
+
+    /// The initial values of the interval.
+    struct Start {
+        double velocity, pull, slope;
+    };
+    struct End {
+        double way, velocity;
+        double bend;  ///< bound of |the second derivative of the velocity| on the interval
+    };
+    /// Returns whether the factors are those of this length. Relative differences up to 1e-9, due to the rounding of
+    /// times, are corrected in over().
+    bool is_made_for(double length) const {
+        constexpr double nearly = 1e-9;
+        return std::fabs(length - length_) <= nearly * length_;
+    }
+    /// Returns whether an interval is short enough (some tenths of a radian), and computes its factors if necessary.
+    bool takes(double length) {
+        if (is_made_for(length)) return true;
+        if (!(length <= longest_)) return false;
+        make(length);
+        return true;
+    }
+    /// The values at the end of an interval. Requires takes(length).
+    End over(double length, const Start& start) const {
+        const auto& [v, P, S] = start;
+        const double more = length - length_;
+        const double way = (v * way_[0] + S * way_[2]) + P * way_[1];  // this order: the pull is known last
+        const double velocity = (v * velocity_[0] + S * velocity_[2]) + P * velocity_[1];
+        const double torque = P + S * length_ - damping_ * velocity - stiffness_ * way;
+        const double first = (P - damping_ * v) * per_inertia_;
+        const double second = (S - damping_ * first - stiffness_ * v) * per_inertia_;
+        const double third = (damping_ * second + stiffness_ * first) * per_inertia_;
+        // The second derivative is a free motion, whose energy does not grow.
+        return {way + more * velocity, velocity + more * (torque * per_inertia_),
+                std::fabs(second) + std::fabs(third) * per_w0_};
+    }
+
+private:
+    static constexpr double short_of = 0.3;
+    void make(double length);
+
+    double inertia_, damping_, stiffness_, per_inertia_, per_w0_, longest_;
+    double length_ = 0;
+    std::array<double, 3> way_{}, velocity_{};  // responses to unit velocity, pull and slope
+};
 
 class ExactEngine {
 public:
@@ -35,11 +92,11 @@ public:
 private:
     // The following functions return false if they ended the run.
     bool advance();
-    [[nodiscard]] bool comes_from_afar() const;
+    bool comes_from_afar() const;
     bool move();
     bool rest_until_end();
     void finish();
-    [[nodiscard]] LoneContact::Standstill standstill() const { return {clock_.hi, y_.theta, M_}; }
+    LoneContact::Standstill standstill() const { return {clock_.hi, y_.theta, M_}; }
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
         if (const double theta = contact_.place_at_stop(standstill()); theta != y_.theta)
@@ -53,9 +110,7 @@ private:
         outcome_ = outcome;
         return false;
     }
-    [[nodiscard]] double pull() const {
-        return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(contact_.motion()));
-    }
+    double pull() const { return pull_of(system_.stiffness(), y_.theta, M_, system_.braking(contact_.motion())); }
     /// M - k theta minus the braking of friction, rounded once: near the limit of sticking it is a small difference.
     [[nodiscard]] static double pull_of(double k, double theta, double M, double braking) {
         const double sum = M - braking;
@@ -63,7 +118,7 @@ private:
         const double rest = (M - (sum - part)) - (braking + part);
         return std::fma(-k, theta, sum) + rest;
     }
-    [[nodiscard]] WalkedCurve::End start_from_rest(double start_pull) const;
+    WalkedCurve::End start_from_rest(double start_pull) const;
     /// Moves away from a standstill; returns false if the mass does not start.
     bool get_under_way(FirstExit& exit, double sign, double start_pull, double length);
     /// The first zero of the velocity, or the time at which a creep is detected.
@@ -96,7 +151,7 @@ private:
     struct Cost {
         static constexpr double between_calls = 1e7, of_a_line = between_calls / 65536;
         double spent = std::numeric_limits<double>::infinity();
-        [[nodiscard]] bool is_due() const { return spent >= between_calls; }
+        bool is_due() const { return spent >= between_calls; }
     };
     /// The lengths of recent intervals, which the next ones are likely to repeat.
     struct Habits {
@@ -130,10 +185,10 @@ private:
         const model::Samples* samples = nullptr;  // the record if M is nothing else
         double gain = 0, from = 0, to = 0;
         std::size_t place = 0;  // index of the present sample
-        [[nodiscard]] double time(std::size_t ahead) const { return samples->t[place + ahead]; }
-        [[nodiscard]] double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
-        [[nodiscard]] double length() const { return time(1) - time(0); }
-        [[nodiscard]] bool goes_on(double until) const { return place + 1 < samples->t.size() && time(1) <= until; }
+        double time(std::size_t ahead) const { return samples->t[place + ahead]; }
+        double torque(std::size_t ahead) const { return gain * samples->M[place + ahead]; }
+        double length() const { return time(1) - time(0); }
+        bool goes_on(double until) const { return place + 1 < samples->t.size() && time(1) <= until; }
     };
     Record record_;
     Arc arc_;

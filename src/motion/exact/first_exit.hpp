@@ -31,7 +31,7 @@ struct Creep {
     double fastest = -1;  ///< greatest speed over the shortest look
 
     /// C + I/h of the shortest look, the greatest torque per speed.
-    [[nodiscard]] double resistance() const { return damping + inertia / shortest; }
+    double resistance() const { return damping + inertia / shortest; }
 };
 
 /// The length of the previous interval of some kind, tried first for the next one. After failures it pauses for a
@@ -77,7 +77,7 @@ public:
 
     /// Also ends the search at a creep.
     void watch(const Creep& creep) { creep_ = creep; }
-    [[nodiscard]] bool crept() const { return crept_; }
+    bool crept() const { return crept_; }
 
     /// The first exit from the present point to `until`; without one, the walk moves to `until`. A touch is reported
     /// once, and the next search starts after it.
@@ -89,7 +89,7 @@ public:
     std::optional<Exit> at_once(double from, const WalkedCurve::End& start, double guess, double until,
                                 By by = By::the_beginning);
     /// The curve at the crossing found; slope 0 if it was not evaluated.
-    [[nodiscard]] const WalkedCurve::End& end() const { return end_; }
+    const WalkedCurve::End& end() const { return end_; }
     /// Moves the walk from a crossing to a point certainly inside.
     void depart(double from, const WalkedCurve::End& start, double until);
     /// Moves to a point certainly inside, from a start on the edge with these derivatives (positive: inwards). Returns
@@ -103,14 +103,13 @@ private:
         double low, high;   ///< range of the cubic
         double d0, d1, d2;  ///< differences of its coefficients
         /// Their deviation from a straight line.
-        [[nodiscard]] double bend() const { return std::max(std::fabs(d1 - d0), std::fabs(d2 - d1)); }
+        double bend() const { return std::max(std::fabs(d1 - d0), std::fabs(d2 - d1)); }
         /// h times the greatest and the least slope of the cubic.
-        [[nodiscard]] double rise() const { return 3 * std::max(std::max(d0, d1), d2); }
-        [[nodiscard]] double fall() const { return 3 * std::min(std::min(d0, d1), d2); }
+        double rise() const { return 3 * std::max(std::max(d0, d1), d2); }
+        double fall() const { return 3 * std::min(std::min(d0, d1), d2); }
     };
     [[nodiscard]] static Hull hull(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h);
-    [[nodiscard]] double cubic_crossing(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h,
-                                        double edge) const;
+    double cubic_crossing(const WalkedCurve::Value& a, const WalkedCurve::Value& b, double h, double edge) const;
     struct Zero {
         double tau;
         bool exact;  ///< whether the error is below rounding
@@ -126,10 +125,10 @@ private:
     Exit crossing(double tau, int side);
     bool creeps_from_here(double until);
     void choose_level(double bound, double rounding);
-    [[nodiscard]] double farthest_look(double bound, double rounding) const;
-    [[nodiscard]] double far_from_edges(double rounding) const;
-    [[nodiscard]] double untabulated_length(double bound, int level, double left, int finer) const;
-    [[nodiscard]] double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
+    double farthest_look(double bound, double rounding) const;
+    double far_from_edges(double rounding) const;
+    double untabulated_length(double bound, int level, double left, int finer) const;
+    double margin(double f) const { return std::min(f - band_.low, band_.high - f); }
 
     WalkedCurve& curve_;
     Band band_;

@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "model/excitation.hpp"
-
 namespace dinal::motion::exact {
 
 LinearMotion::LinearMotion(const model::Lowered& system) {

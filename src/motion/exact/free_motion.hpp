@@ -26,47 +26,41 @@ class LinearMotion {
 public:
     explicit LinearMotion(const model::Lowered& system);
 
-    [[nodiscard]] double w0() const { return w0_; }
-    [[nodiscard]] double w0_squared() const { return w0_squared_; }
-    [[nodiscard]] double delta() const { return delta_; }
+    double w0() const { return w0_; }
+    double w0_squared() const { return w0_squared_; }
+    double delta() const { return delta_; }
     /// The rate of the faster of its two parts, per time unit, which bounds the growth of derivatives.
-    [[nodiscard]] double fastest() const { return fastest_; }
+    double fastest() const { return fastest_; }
     /// The rate of the part that does not decay at once; it also converts rounding of an angle to that of a velocity.
-    [[nodiscard]] double lasting() const { return apart_ ? slow_ : w0_; }
+    double lasting() const { return apart_ ? slow_ : w0_; }
     /// The decay rate of its slowest part, per time unit.
-    [[nodiscard]] double decay() const { return slow_; }
-    [[nodiscard]] FreeStep after(double tau) const;
+    double decay() const { return slow_; }
+    FreeStep after(double tau) const;
 
     // The motion in FreeParts:
-    [[nodiscard]] FreeParts parts(double theta, double velocity) const;
+    FreeParts parts(double theta, double velocity) const;
     /// The step for FreeParts.
-    [[nodiscard]] FreeStep parts_after(double tau) const;
-    [[nodiscard]] double velocity(const FreeParts& at) const { return apart_ ? at.first + at.second : at.second; }
-    [[nodiscard]] double acceleration(const FreeParts& at) const {
-        return by_first_ * at.first + by_second_ * at.second;
-    }
-    [[nodiscard]] double theta(const FreeParts& at) const {
-        return apart_ ? -(at.first / slow_ + at.second / fast_) : at.first;
-    }
-    [[nodiscard]] FreeParts derivative(const FreeParts& at) const {
+    FreeStep parts_after(double tau) const;
+    double velocity(const FreeParts& at) const { return apart_ ? at.first + at.second : at.second; }
+    double acceleration(const FreeParts& at) const { return by_first_ * at.first + by_second_ * at.second; }
+    double theta(const FreeParts& at) const { return apart_ ? -(at.first / slow_ + at.second / fast_) : at.first; }
+    FreeParts derivative(const FreeParts& at) const {
         if (apart_) return {-slow_ * at.first, -fast_ * at.second};
         return {at.second, acceleration(at)};
     }
     /// Bounds of |the fourth derivative of the velocity| and of the terms of the velocity, from here on.
-    [[nodiscard]] double fourth_bound(const FreeParts& at) const;
-    [[nodiscard]] double size(const FreeParts& at) const {
-        return std::fabs(at.second) + (apart_ ? 1 : w0_) * std::fabs(at.first);
-    }
+    double fourth_bound(const FreeParts& at) const;
+    double size(const FreeParts& at) const { return std::fabs(at.second) + (apart_ ? 1 : w0_) * std::fabs(at.first); }
 
     // For an oscillating system:
-    [[nodiscard]] bool swings() const { return swings_; }
+    bool swings() const { return swings_; }
     /// lambda = -delta + i w1, and i omega - lambda without the rounding of w1.
-    [[nodiscard]] std::complex<double> root() const { return {-delta_, w1_}; }
-    [[nodiscard]] std::complex<double> from_root(double omega) const { return {delta_, (omega - w1_) - w1_rest_}; }
+    std::complex<double> root() const { return {-delta_, w1_}; }
+    std::complex<double> from_root(double omega) const { return {delta_, (omega - w1_) - w1_rest_}; }
     /// exp(lambda tau)
-    [[nodiscard]] std::complex<double> turned(double tau) const;
+    std::complex<double> turned(double tau) const;
     /// The step that corresponds to exp(lambda tau).
-    [[nodiscard]] FreeStep step(std::complex<double> turned) const {
+    FreeStep step(std::complex<double> turned) const {
         const double moved = turned.imag() / w1_;
         return {turned.real() + delta_ * moved, moved, turned.real() - delta_ * moved};
     }

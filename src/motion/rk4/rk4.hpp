@@ -15,9 +15,9 @@ struct Rk4 {
     static const MethodText about;
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;
-    [[nodiscard]] Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
-    [[nodiscard]] Cut cut() const { return {.longest = h, .step = h}; }
-    [[nodiscard]] Run run(const Problem& problem) const;
+    Resolution resolution(const model::Oscillator& /*system*/) const { return {"h", h}; }
+    Cut cut() const { return {.longest = h, .step = h}; }
+    Run run(const Problem& problem) const;
 };
 
 inline constexpr text::Option rk4_options[] = {

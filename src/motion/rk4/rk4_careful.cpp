@@ -29,7 +29,7 @@ std::pair<double, double> positive_peak(F&& f, double a, double b) {
 
 }  // namespace
 
-bool Rk4Engine::careful_step(double end, const Sampled* known) {
+bool Rk4Engine::careful_step(double end, const Loads* known) {
     while (t_ < end) {
         const double next_break = excitation_.next_break(t_);
         const bool breaks = next_break <= end;
@@ -43,7 +43,7 @@ bool Rk4Engine::careful_step(double end, const Sampled* known) {
     return true;
 }
 
-bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
+bool Rk4Engine::piece(double end, bool break_at_end, const Loads* known) {
     while (t_ < end) {
         if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
         if (contact_.stuck()) {
@@ -73,7 +73,7 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Sampled* known) {
     return finite();
 }
 
-Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Sampled* known) const {
+Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Loads* known) const {
     if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
     // Samples exist for whole steps only, but the one at the end serves every piece that ends there.
     const bool whole = known != nullptr && length > steps_.h * (1 - 1e-9);
@@ -143,7 +143,7 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
 }
 
 /// Stays stuck up to the end of the piece or the first time with |M - k theta| > Re.
-bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
+bool Rk4Engine::stay(double end, bool break_at_end, const Loads* known) {
     model::Motion next = contact_.pulled(M_, y_.theta);
     if (next == model::Motion::stuck) {
         double M_end = M_;
@@ -157,8 +157,7 @@ bool Rk4Engine::stay(double end, bool break_at_end, const Sampled* known) {
     return go_on(contact_.release(standstill(), next));
 }
 
-std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Sampled* known,
-                                              double& M_end) const {
+std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Loads* known, double& M_end) const {
     const auto M = [&](double t) { return M_at(t, end, break_at_end, y_); };
     const auto excess_of = [&](double torque) { return contact_.excess(torque, y_.theta); };
     const auto excess = [&](double t) { return excess_of(M(t)); };

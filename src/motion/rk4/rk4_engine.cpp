@@ -118,7 +118,7 @@ bool Rk4Engine::run_block(std::size_t n, std::size_t count) {
             if (!finite()) return false;
         }
         if (i < count) {
-            const Sampled known{block_.samples[2 * i], block_.samples[2 * i + 1]};
+            const Loads known{block_.samples[2 * i], block_.samples[2 * i + 1]};
             if (!careful_step(time(n + i + 1), &known)) return false;
             ++i;
         }

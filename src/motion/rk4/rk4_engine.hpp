@@ -3,7 +3,6 @@
 // do not change the motion.
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "motion/checkpoints.hpp"
@@ -32,8 +31,8 @@ public:
     model::Outcome run();
     model::Outcome run(const Rk4Checkpoint& from, std::size_t last_step);
 
-    [[nodiscard]] const engine::StepTimes& steps() const { return steps_; }
-    [[nodiscard]] Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, contact_.mark()}; }
+    const engine::StepTimes& steps() const { return steps_; }
+    Rk4Checkpoint here(std::size_t step) const { return {step, y_, M_, contact_.mark()}; }
     /// Stores the time and state reached.
     void leave(Run& run) const {
         run.t_stop = t_;
@@ -44,10 +43,10 @@ public:
 
 private:
     /// M in the middle and at the end of a step, if known.
-    struct Sampled {
+    struct Loads {
         double middle, end;
     };
-    [[nodiscard]] double time(std::size_t n) const { return steps_.time(n); }
+    double time(std::size_t n) const { return steps_.time(n); }
     /// The result of one smooth step.
     struct Stepped {
         model::State y;
@@ -66,20 +65,19 @@ private:
     std::size_t rest(std::size_t n, std::size_t i, std::size_t count);
 
     // Careful steps, for one step or a part of it:
-    bool careful_step(double end, const Sampled* known);
-    bool piece(double end, bool break_at_end, const Sampled* known);
-    bool stay(double end, bool break_at_end, const Sampled* known);
+    bool careful_step(double end, const Loads* known);
+    bool piece(double end, bool break_at_end, const Loads* known);
+    bool stay(double end, bool break_at_end, const Loads* known);
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
-    [[nodiscard]] Stepped step(double length, double end, bool break_at_end, const Sampled* known) const;
+    Stepped step(double length, double end, bool break_at_end, const Loads* known) const;
     /// How feedback is evaluated: at the states of the trial step, or, next to a jump at velocity zero, only on the
     /// present side of it.
     enum class Asks { freely, beside };
-    [[nodiscard]] Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
-    [[nodiscard]] bool lost_in_rounding(const model::State& y, double a) const;
+    Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
+    bool lost_in_rounding(const model::State& y, double a) const;
     void record_turns(double t, double h, double direction, const model::State& y0, double a0, const model::State& y1,
                       double a1);
-    [[nodiscard]] std::optional<double> release_time(double end, bool break_at_end, const Sampled* known,
-                                                     double& M_end) const;
+    std::optional<double> release_time(double end, bool break_at_end, const Loads* known, double& M_end) const;
 
     void rows_until(double end, const StepInterpolant& motion);
     void rows_standing_until(double end);
@@ -90,7 +88,7 @@ private:
             failed_ = true;
         }
     }
-    [[nodiscard]] LoneContact::Standstill standstill() const { return {t_, y_.theta, M_}; }
+    LoneContact::Standstill standstill() const { return {t_, y_.theta, M_}; }
     void stop_at_end();
     /// Lets the friction law decide about a mass at velocity zero.
     bool decide() {
@@ -111,16 +109,16 @@ private:
         if (!std::isfinite(y_.theta) || !std::isfinite(y_.velocity)) return fail(model::Outcome::state_not_finite);
         return !failed_ || fail(model::Outcome::excitation_not_finite);
     }
-    [[nodiscard]] double M_at(double t, double end, bool break_at_end, const model::State& y) const {
+    double M_at(double t, double end, bool break_at_end, const model::State& y) const {
         return break_at_end && t == end ? excitation_.value_before(t, y) : excitation_.value(t, y);
     }
     /// F/I for the torque M in the present direction of motion.
-    [[nodiscard]] double forcing(double M) const { return (M - friction_) * block_.inverse_inertia; }
+    double forcing(double M) const { return (M - friction_) * block_.inverse_inertia; }
     /// theta'' under a torque that depends on the motion: M at this state, and the remainder of friction.
-    [[nodiscard]] double acceleration_at(const model::State& y, double M) const {
+    double acceleration_at(const model::State& y, double M) const {
         return acceleration(forcing(M - system_.remainder(contact_.motion(), y)), y);
     }
-    [[nodiscard]] double acceleration(double f, const model::State& y) const {
+    double acceleration(double f, const model::State& y) const {
         return f - block_.map.c * y.velocity - block_.map.w * y.theta;
     }
 

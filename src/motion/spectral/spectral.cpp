@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "motion/engine/plain.hpp"
+#include "motion/engine/part.hpp"
 #include "motion/simulate.hpp"
 
 namespace dinal::motion::spectral {

@@ -20,12 +20,12 @@ struct Spectral {
 
     static const MethodText about;
     /// The longest panel whose samples miss no pulse of the width `narrowest`, time units.
-    [[nodiscard]] double widest_looks() const;
+    double widest_looks() const;
     /// The longest panel of a run, time units.
-    [[nodiscard]] double longest(const Problem& problem) const;
-    [[nodiscard]] Resolution resolution(const model::Oscillator& system) const;
-    [[nodiscard]] Cut cut() const { return {.tolerance = tolerance, .longest = std::min(max_panel, widest_looks())}; }
-    [[nodiscard]] Run run(const Problem& problem) const;
+    double longest(const Problem& problem) const;
+    Resolution resolution(const model::Oscillator& system) const;
+    Cut cut() const { return {.tolerance = tolerance, .longest = std::min(max_panel, widest_looks())}; }
+    Run run(const Problem& problem) const;
 };
 
 inline constexpr text::Option spectral_options[] = {

@@ -10,7 +10,7 @@
 
 #include "plots/neighbours.hpp"
 #include "text/characters.hpp"
-#include "text/html.hpp"
+#include "text/harmless.hpp"
 
 namespace dinal::plots::animation {
 
@@ -22,8 +22,7 @@ double way_of(const model::Excitation& belt, double from, double to) {
 }
 
 bool is_stuck(const std::vector<Interval>& stuck, double t) {
-    const auto next = std::upper_bound(stuck.begin(), stuck.end(), t,
-                                       [](double time, const Interval& interval) { return time < interval.low; });
+    const auto next = std::ranges::upper_bound(stuck, t, {}, &Interval::low);
     return next != stuck.begin() && t <= std::prev(next)->high;
 }
 
@@ -222,7 +221,7 @@ private:
         return list;
     }
 
-    [[nodiscard]] double graph_x(const Graph& graph, std::size_t frame) const {
+    double graph_x(const Graph& graph, std::size_t frame) const {
         return graph.left +
                (graph.right - graph.left) * static_cast<double>(frame) / static_cast<double>(clock_.frames.size() - 1);
     }
@@ -257,28 +256,26 @@ private:
     static constexpr double block = 36, post = 6, top = 74, floor = 106, middle = 86, radius = 30;
     static constexpr const char* colours[] = {"#0072B2", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
 
-    [[nodiscard]] std::string of_one_mass() const {
+    std::string of_one_mass() const {
         return fmt::format("A mass on {}{}{}: it starts at θ = {:.3g}, ends at {:.3g} and is orange while it sticks.",
                            clock_.belt ? "a moving belt" : "a surface with dry friction",
                            clock_.spring ? ", with a spring" : "", clock_.walls ? ", between walls" : "",
                            clock_.frames.front().theta, clock_.frames.back().theta);
     }
 
-    [[nodiscard]] const char* colour(std::size_t i) const { return colours[i % std::size(colours)]; }
-    [[nodiscard]] double centre(std::size_t i) const {
+    const char* colour(std::size_t i) const { return colours[i % std::size(colours)]; }
+    double centre(std::size_t i) const {
         const double all = cell_ * static_cast<double>(scene_.bodies.size());
         return (width_ - all) / 2 + cell_ * (static_cast<double>(i) + 0.5);
     }
     /// The travel of a block, with room for the spring on the left.
-    [[nodiscard]] double travel() const { return std::max(cell_ - block - 44, 8.0); }
-    [[nodiscard]] double shift(double theta) const {
+    double travel() const { return std::max(cell_ - block - 44, 8.0); }
+    double shift(double theta) const {
         const Interval& reach = scene_.bodies.front().reach;
         return (theta - (reach.low + reach.high) / 2) / reach.length() * travel();
     }
-    [[nodiscard]] double x_of(std::size_t i, double theta) const { return centre(i) + 12 + shift(theta); }
-    [[nodiscard]] double x(std::size_t i, const Frame& frame) const {
-        return scene_.discs ? centre(i) : x_of(i, frame.theta);
-    }
+    double x_of(std::size_t i, double theta) const { return centre(i) + 12 + shift(theta); }
+    double x(std::size_t i, const Frame& frame) const { return scene_.discs ? centre(i) : x_of(i, frame.theta); }
 
     void add_floor(std::size_t i) {
         const Track& body = scene_.bodies[i];
@@ -353,7 +350,7 @@ private:
                : words((centre(left) + centre(right)) / 2, above - 2, "middle", link.track.name);
     }
     /// Returns whether no earlier link connects the same bodies, as it would hide this one.
-    [[nodiscard]] bool first_between(std::size_t left, std::size_t k) const {
+    bool first_between(std::size_t left, std::size_t k) const {
         return std::none_of(
             scene_.links.begin(), scene_.links.begin() + static_cast<std::ptrdiff_t>(k), [left](const Link& other) {
                 return std::min(other.first, other.second) == left && std::max(other.first, other.second) == left + 1;

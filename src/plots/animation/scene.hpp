@@ -29,9 +29,9 @@ struct Track {
     std::string name = {};  ///< empty for a single unnamed body
     model::Units units = {};
 
-    [[nodiscard]] double at(double theta) const { return (theta - reach.low) / reach.length(); }
+    double at(double theta) const { return (theta - reach.low) / reach.length(); }
     /// The displacement of the surface, as a fraction of the reach.
-    [[nodiscard]] double shift(const Frame& frame) const { return frame.surface / reach.length(); }
+    double shift(const Frame& frame) const { return frame.surface / reach.length(); }
 };
 
 struct Link {
@@ -52,7 +52,7 @@ struct Take {
     double from = 0, to = 1;
     double seconds = 10;
     static constexpr double frames_per_second = 25;
-    [[nodiscard]] double steps() const { return seconds * frames_per_second; }
+    double steps() const { return seconds * frames_per_second; }
 };
 
 /// Makes frames, using the motion between rows. `belt` is the velocity of the surface, or nullptr. Fails if the run

@@ -1,4 +1,4 @@
-#include "model/contradiction.hpp"
+#include "model/event.hpp"
 
 #include <fmt/format.h>
 
