@@ -196,6 +196,19 @@ test("a contact that can hold nothing at rest slips under a torque that falls wi
     near(run.b.velocity[#run.t], 0, 1e-12)
 end)
 
+test("uneven breakaway holds alike under exact and spectral, with a table of M and without", function()
+    local uneven = system { I = 1, k = 1, friction = friction.asymmetric { forward = { Rd = 0.2, Re = 2 }, backward = { Rd = 0.1, Re = 1 } } }
+    local t = vector.linspace(0, 20, 201)
+    for _, M in ipairs { excitation.harmonic { amplitude = 0.5, omega = 1 }, excitation.samples { t = t, M = -1.5 * t:sin() } } do
+        for _, theta0 in ipairs { 0, 0.8, -1.7 } do
+            local exact = uneven:simulate { M = M, theta0 = theta0, t_end = 20, dt = 0.1, integrator = integrator.exact {} }
+            local spectral = uneven:simulate { M = M, theta0 = theta0, t_end = 20, dt = 0.1, integrator = integrator.spectral {} }
+            equal(#exact.events, #spectral.events)
+            near(exact.theta, spectral.theta, 1e-10)
+        end
+    end
+end)
+
 test("friction that falls steeply with the speed stops a fast mass where its decay says", function()
     -- Beyond speed 0, where stretches and steps look for the stop, such laws would grow without bound.
     local theta0, k, Rd = 1000, 100, 0.6
