@@ -21,7 +21,7 @@ end)
 test("decays of all kinds are identified: 0.1 to 3 % of noise, from seconds to hours, Re = Rd or more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
-    local records = lots(100)
+    local records, accused = lots(100), 0
     for seed = 1, records do
         local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
         local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
@@ -32,10 +32,12 @@ test("decays of all kinds are identified: 0.1 to 3 % of noise, from seconds to h
             dt = t_end / math.random(100, 600) }
         local fit = identify{ data = record(run, seed, std, 0.3) }
         assert(fit.noise < std * (1 + 3 / (2 * #run)^0.5), tostring(s))
+        accused = accused + (fit.misfit and 1 or 0)
         part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
             velocity0 = run.velocity[1] })
     end
     assert(records < 100 or part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
+    assert(accused <= 1, accused) -- such a record fits the model
 end)
 
 test("given values have no error, and a misspelt field is an error", function()
@@ -271,25 +273,6 @@ test("no error is below the rounding of doubles, and a held offset and a missing
         assert(not tostring(identify{ data = decay, I = 1, free = free or nil }):find("held at 0", 1, true))
     end
     raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
-end)
-
-test("correlated noise widens the errors, and is reported; white noise does neither", function()
-    local M = excitation.harmonic { amplitude = 1, omega = 1.7 } + excitation.harmonic { amplitude = 0.5, omega = 4 }
-    local run = system { I = 1, k = 4, C = 0.2, Rd = 0.2 }:simulate { M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
-    local within, told = 0, 0
-    for seed = 1, 12 do
-        local white, x, colored = vector.normal { n = #run.t, std = 0.003, seed = seed }, 0, {}
-        for i = 1, #run.t do
-            x = 0.9 * x + white[i]
-            colored[i] = x
-        end
-        local fit = identify { data = data { t = run.t, theta = run.theta + vector(colored) }, M = M }
-        if math.abs(fit.k - 4) < 2 * fit.std_error.k then within = within + 1 end
-        if tostring(fit):find "correlated from sample to sample" then told = told + 1 end
-        equal(fit.misfit, nil)
-        if seed % 4 == 0 then equal(#identify { data = data { t = run.t, theta = run.theta + white }, M = M }.notes, 0) end
-    end
-    assert(within >= 10 and told == 12, within .. " " .. told) -- 95 %; without the memory half of them
 end)
 
 local rich = excitation.harmonic{ amplitude = 1.2, omega = 1.7 } + excitation.harmonic{ amplitude = 0.5, omega = 4 }
