@@ -48,25 +48,6 @@ TEST_CASE("a gaussian agrees with its formula, and is exactly 0 far away", "[gau
     CHECK(narrow.value(narrow.constant_from()) == 0);
 }
 
-TEST_CASE("the longest step that does not miss a bump depends on the distance from it", "[gaussian]") {
-    const double width = 0.01, spacing = 0.1;
-    const double close = width / 2 / spacing;  // a look of this length has samples half a width apart
-    const Excitation M = made(Gaussian{1, 5, width});
-    CHECK(M.view(2, spacing) == near(5 - 10 * width - 2));
-    CHECK(M.view(5 - 10 * width - close / 2, spacing) == near(close));
-    CHECK(M.view(5, spacing) == near(close));
-    CHECK(M.view(5 + 9.9 * width, spacing) == near(close));
-    CHECK(M.view(5 + 10.1 * width, spacing) == never);
-    CHECK((M + made(Gaussian{1, 3, 1e-3})).view(2.5, spacing) == near(3 - 1e-2 - 2.5));
-    CHECK((M + made(Constant{1})).view(5, spacing) == near(close));
-    CHECK(M.scaled(0).view(5, spacing) == never);
-    CHECK(M.delayed(1).view(6, spacing) == near(close));
-    CHECK(M.windowed(0, 4).view(2, spacing) == never);
-    CHECK(M.windowed(5, 6).view(2, spacing) == near(3));
-    CHECK(M.windowed(0, 5).view(5, spacing) == never);
-    CHECK(made(Harmonic{1, 1, 0}).view(0, spacing) == never);
-}
-
 TEST_CASE("a load that grows from zero moves a mass at rest from its first moment on", "[long][gaussian][spectral]") {
     // From 1e-308 down numbers lose their digits, and no M is smooth there.
     for (const double width : {0.01, 0.06}) {

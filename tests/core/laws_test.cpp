@@ -1,10 +1,8 @@
 // Friction laws other than one number each for sliding and holding; hybrid_test.cpp and corners_test.cpp have their
 // motions against independent integrators.
-#include <algorithm>
 #include <cmath>
 
 #include "analysis/energy.hpp"
-#include "analysis/explain.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
 #include "model/laws/tabulated.hpp"
@@ -85,21 +83,6 @@ TEST_CASE("a law with equal numbers in both directions is Coulomb's, bit for bit
         };
         CHECK(run(plain) == run(twice));
     }
-}
-
-TEST_CASE("the story names both sides of a friction law, and no closed form that does not hold", "[laws][explain]") {
-    const auto story = [](const Friction& law) {
-        const Oscillator system = with_law(law);
-        const Excitation M;
-        return analysis::explain(must_run(system, M, {2, 0}, {0, 30}, Grid::every(0.1), Spectral{}), system, M,
-                                 Spectral{});
-    };
-    std::string asymmetric = story(AsymmetricCoulomb{.forward = {0.1, 0.3}, .backward = {0.35, 0.5}});
-    std::replace(asymmetric.begin(), asymmetric.end(), '\n', ' ');
-    CHECK_THAT(asymmetric, Catch::Contains("forward and 0.35 backward") && Catch::Contains("forward and 0.5 backward"));
-    CHECK_THAT(asymmetric, !Catch::Contains("2 Rd/k"));
-    CHECK_THAT(story(law_cases().back().law), Catch::Contains("friction depends on the speed"));
-    CHECK_THAT(story(Coulomb{0.1, 0.3}), Catch::Contains("2 Rd/k"));
 }
 
 }  // namespace dinal::laws_test

@@ -80,17 +80,6 @@ TEST_CASE("a belt carries the mass against the wall and slides along it", "[wall
     }
 }
 
-TEST_CASE("a belt that reverses takes a leaning mass off the wall", "[walls][belt]") {
-    // Pressed with 0.1; the belt holds it with 0.3 on the way in, and takes it off on the way back.
-    model::Drive drive{constant(0.1)};
-    drive.belts = {harmonic(0.5, 1)};
-    const auto run = simulate(walled({-none, 0, 0}, 0, 0.3, 0.3), drive, {0, 5}, Grid::none(), Spectral{});
-    REQUIRE(run);
-    REQUIRE_FALSE(run->events.empty());
-    CHECK(run->events[0].kind == EventKind::slip);
-    CHECK(run->events[0].t == within(pi, 1e-12));
-}
-
 TEST_CASE("states are integrated while the mass leans, and user events see impacts", "[walls][states]") {
     model::Drive drive{{}, {0, 1}};
     drive.states.push_back({"z", 0, written([](double, const State& y, std::span<const double>) { return y.theta; })});

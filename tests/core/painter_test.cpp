@@ -246,21 +246,6 @@ TEST_CASE("an SVG of many random points or lines is smaller than 200 kB", "[pain
     }
 }
 
-TEST_CASE("one outlier among a million points reaches the top", "[painter]") {
-    std::vector<double> x, y;
-    for (int i = 0; i < 1'000'000; ++i) {
-        x.push_back(i);
-        y.push_back(std::sin(0.01 * i));
-    }
-    y[654'321] = 7;
-    const Dots over_time(curve_of(x, y));
-    CHECK(over_time.at(654'321, 6.9) == blue);
-    CHECK(over_time.at(700'000, 6.9) == white);
-    std::transform(x.begin(), x.end(), x.begin(), [](double i) { return std::cos(0.01 * i); });  // 1591 turns
-    const Dots plane(curve_of(x, y));
-    CHECK(plane.ink({-0.9, 0.9}, {2.2, 6.8}) > 0.005);
-}
-
 TEST_CASE("a line is drawn at its coordinates, on all axes", "[painter]") {
     const Dots straight(curve_of({0, 10}, {-1, 1}));
     CHECK(straight.at(2.5, -0.5) == blue);

@@ -132,22 +132,6 @@ TEST_CASE("a release is at the time when M passes the limit, to rounding", "[raz
     }
 }
 
-TEST_CASE("a mass put down at rest: inside the dead zone it stays, outside it moves, and neither is an event",
-          "[razor]") {
-    const Integrator integrator = either();
-    CAPTURE(integrator.index());
-    const Oscillator system = nondimensional(0, 0.25, 0.5);
-    const Run inside = run_of(system, {}, {0.4, 0}, 3, integrator);
-    check_never_moved(inside, 0.4);
-    CHECK(inside.outcome == Outcome::at_rest);
-    const Run outside = run_of(system, {}, {0.6, 0}, 3, integrator);
-    // Half a cycle about Rd/k = 0.25, to -0.1, and there it rests.
-    REQUIRE(outside.events.size() == 1);
-    CHECK(outside.events[0].kind == EventKind::rest);
-    CHECK(outside.events[0].t == within(0.5, tolerance_of(integrator, 1e-10)));
-    CHECK(outside.events[0].theta == within(-0.1, tolerance_of(integrator, 1e-10)));
-}
-
 TEST_CASE("a mass at rest stays exactly where it is, for ever", "[razor]") {
     const Integrator integrator = either();
     CAPTURE(integrator.index());
@@ -206,21 +190,6 @@ TEST_CASE("a jump of M on a stuck mass releases it at that very time", "[razor]"
             CHECK(run.events[0].theta == 0.1);
             CHECK(run.events[0].M == 0.5);
         }
-    }
-}
-
-TEST_CASE("a mass at rest for 20 periods is still hit by a pulse of a twentieth of one", "[razor]") {
-    const Excitation pulse = native(Pulse{.amplitude = 1, .at = 20, .width = 0.05});
-    const std::vector<Integrator> all{Exact{}, Spectral{}, Rk4{0.001}, Rk4{0.01}, Rk4{0.07}, Rk4{0.3}};
-    for (const Integrator& integrator : all) {
-        const Run run = must_run(nondimensional(0, 0.167), pulse, {0, 0}, {0, 25}, Grid::none(), integrator);
-        CAPTURE(integrator.index(), run.events.size());
-        REQUIRE(run.events.size() == 2);
-        CHECK(run.events[0].kind == EventKind::slip);
-        CHECK(run.events[0].t == 20);
-        CHECK(run.events[1].kind == EventKind::rest);
-        CHECK(run.events[1].theta > 0.1);
-        CHECK(run.outcome == Outcome::at_rest);
     }
 }
 

@@ -87,11 +87,6 @@ TEST_CASE("a record reads back bit by bit and is saved again as it was", "[recor
     CHECK(text_of(folder.file("b.dat")) == text_of(folder.file("a.dat")));
 }
 
-TEST_CASE("the names of the columns state by what they are divided", "[record1989]") {
-    CHECK(record1989_names() == std::vector<std::string>{"t", "theta", "velocity_over_omega0", "M_over_k",
-                                                         "friction_over_k", "damping_over_k"});
-}
-
 TEST_CASE("a record without rows has NPUNT = 0", "[record1989]") {
     const TemporaryFolder folder;
     REQUIRE(write_record1989(folder.file("x.dat"), Eigen::MatrixXd(0, 6)));

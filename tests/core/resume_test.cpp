@@ -100,24 +100,6 @@ TEST_CASE("a run can be continued from any time, also from the very moment of a 
     }
 }
 
-TEST_CASE("a stuck mass slips in a continued run as in an uninterrupted one", "[resume]") {
-    const Oscillator system = nondimensional(0, 0.2, 0.3);
-    const Excitation late = Excitation::make(Step{.amplitude = 0.9, .at = 5}).value();
-    for (const double split : {4.0, 5.0}) {  // the second at the very time of the jump
-        auto first = simulate(system, {late, {1, 0}}, {0, split}, Grid::every(0.5), Spectral{});
-        REQUIRE(first);
-        CHECK(first->events.back().kind == EventKind::stick);
-        auto both = resume(system, late, *first, 6, Grid::every(0.5), Spectral{});
-        REQUIRE(both);
-        const Run whole = must_run(system, late, {1, 0}, {0, 6}, Grid::every(0.5), Spectral{});
-        REQUIRE(both->events.size() == whole.events.size());
-        for (std::size_t i = 0; i < whole.events.size(); ++i) {
-            CHECK(both->events[i].kind == whole.events[i].kind);
-            CHECK(both->events[i].t == whole.events[i].t);
-        }
-    }
-}
-
 TEST_CASE("a run continued from the time of a turn has that turn once", "[resume][spectral]") {
     for (int i = 0; i < 6; ++i) {
         const Oscillator system = nondimensional(i % 3 == 0 ? 0 : 0.07, i % 2 == 0 ? 0 : 0.1);

@@ -7,7 +7,6 @@
 #include "analysis/energy.hpp"
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
-#include "support/kinds.hpp"
 #include "support/measure.hpp"
 #include "support/random_case.hpp"
 #include "support/within.hpp"
@@ -203,37 +202,7 @@ TEST_CASE("with a nearly absent spring, stops and turns follow the load, not T0"
     check_order(run.events);
 }
 
-TEST_CASE("a mass at rest without friction does not turn before a smooth pulse comes", "[spectral]") {
-    for (const double k : {0.0, 0.3}) {
-        const Oscillator system = system_of({.inertia = 0.65, .stiffness = k, .damping = 5.2});
-        const Run run =
-            by_spectral(system, made(Gaussian{.amplitude = 3.7, .at = 14.6, .sigma = 0.16}), {0, 0}, {0, 15});
-        CAPTURE(k);
-        CHECK(run.events.empty());  // it goes forward all the time: the pulse is not over yet
-        CHECK(run.state_at_stop.theta > 0.01);
-    }
-}
-
 // ---- stiff
-
-TEST_CASE("a stiff system far from t = 0 moves like one at t = 0", "[spectral]") {
-    // zeta about 2000, from t0 = 571 T0 on.
-    const OscillatorParameters p{.inertia = 1, .stiffness = 1, .damping = 4000, .kinetic_friction = 0.3};
-    const Oscillator system = system_of(p);
-    const double start = 571 * system.natural_period(), end = start + 12 * system.natural_period();
-    const ReferenceSystem s{"stiff, late", system, harmonic(2, 0.7), harmonic_drive(2, 0.7), {0.4, -0.01},
-                            {start, end},  0.5};
-    const ExactMotion exact = s.exact();
-    const Run run = must_run(s, Grid::every(0.37), Spectral{});
-    CHECK(run.outcome == Outcome::reached_end);
-    CHECK(error_of(run, exact, system) < 1e-12);
-    REQUIRE(run.events.size() == exact.events().size());
-    for (std::size_t i = 0; i < run.events.size(); ++i) {
-        CHECK(as_stop(run.events[i].kind) == exact.events()[i].kind);
-        // theta'' is M/C w there at most, 2000 times less than without damping.
-        CHECK(run.events[i].t == within(static_cast<double>(exact.events()[i].t), 1e-9));
-    }
-}
 
 TEST_CASE("a pulse shorter than the resolution of the time gives its whole impulse", "[spectral]") {
     // Of some hundred times of the last bit of t; its ends are doubles. What comes after it is a free motion.

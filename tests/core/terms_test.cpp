@@ -45,19 +45,6 @@ TEST_CASE("each term breaks where its formula does, and is constant from where i
     }
 }
 
-TEST_CASE("a step and a pulse switch at their break and not one double earlier", "[excitation]") {
-    const Excitation step = made(Step{3, 0.3});
-    CHECK(step.value(just_before(0.3)) == 0);
-    CHECK(step.value(0.3) == 3);
-    CHECK(step.value_before(0.3) == 0);
-    CHECK(step.value_after(0.3) == 3);
-    const Excitation pulse = made(Pulse{2, 0.1, 0.2});
-    const double end = 0.1 + 0.2;
-    CHECK(pulse.value(0.1) == 2);
-    CHECK(pulse.value(just_before(end)) == 2);
-    CHECK(pulse.value(end) == 0);
-}
-
 TEST_CASE("every sample of an uneven record is hit exactly, in order and out of order", "[excitation]") {
     std::vector<double> t;
     std::vector<double> values;

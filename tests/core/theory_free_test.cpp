@@ -55,15 +55,6 @@ TEST_CASE("the free response is exact in all regimes and between them", "[theory
     }
 }
 
-TEST_CASE("the free response before t = 0 leads to its start", "[theory]") {
-    for (const double zeta : {0.0, 0.3, 1.0, 1.7}) {
-        const State before = free_response(3, zeta, {0.4, -1.1}, -0.6);
-        const State back = free_response(3, zeta, before, 0.6);
-        CHECK(back.theta == Approx(0.4).epsilon(1e-13));
-        CHECK(back.velocity == Approx(-1.1).epsilon(1e-13));
-    }
-}
-
 TEST_CASE("figure 22: the half-cycle map gives the extremes and the rest of dry friction", "[theory]") {
     const FreeMotion motion(nondimensional(0, 0.167), {0, 2 * pi});
     check_extremes(motion, {{0.223664157, 0.846848608},

@@ -42,20 +42,16 @@ end)
 
 test("the instructor's file is made as the handbook says, and all that --lab-solutions tells is right", function()
   equal(shell(block "lab-course.lua", source), "")
-  local sheets, said = 0, nil
-  for _, number in ipairs { 20260017, 4711 } do
-    lab.number(number)
-    said = shell("dinal --lab-solutions " .. number)
-    for question, rest in said:gmatch "\n  (%d%a)  ([^\n]*)" do
-      local value = tonumber(rest:sub(53):match "^%s*(%S+)")
-      assert(value, rest)
-      check(question, value)
-    end
-    for _ in said:gmatch "\nSheet %d: " do sheets = sheets + 1 end
-    for _, mark in ipairs(lab.marks()) do equal(mark.verdict, "right", mark.question) end
-    assert(#lab.marks() > 10)
+  lab.number(4711)
+  local said = shell "dinal --lab-solutions 4711"
+  for question, rest in said:gmatch "\n  (%d%a)  ([^\n]*)" do
+    local value = tonumber(rest:sub(53):match "^%s*(%S+)")
+    assert(value, rest)
+    check(question, value)
   end
-  assert(sheets >= 4, sheets)
+  equal(select(2, said:gsub("\nSheet %d: ", "")), 7)
+  for _, mark in ipairs(lab.marks()) do equal(mark.verdict, "right", mark.question) end
+  assert(#lab.marks() > 40, #lab.marks())
   local sheet = 0
   for talk in (said .. "\n\n"):gmatch "\n  The questions at the end:\n(.-)\n\n" do
     sheet = sheet + 1
@@ -117,7 +113,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   hand_in("disguised", (support.read(home .. "/hand-ins/1-1004.lua"):gsub("1004", "3006"):gsub("\n", " -- mine\n\n")))
   output(("ln -s /etc/passwd '%s/hand-ins/link.lua'; mkfifo '%s/hand-ins/pipe.lua'; mkdir '%s/hand-ins/sub'"):format(home, home, home))
   hand_in("sub/\27[31m\n", "lab.number(3005)\ncheck('1a', 1)")
-  local said = shell "dinal --max-time=4 --mark hand-ins"
+  local said = shell "dinal --max-time=1 --mark hand-ins"
 
   local rows = {}
   for row in said:gmatch "[^\n]+" do
@@ -130,7 +126,7 @@ test("--mark: many hand-ins are marked at once, and none touches the others", fu
   end
   assert(rows["2-1001"]:find "^1001 +%- .- 0 of 6$", rows["2-1001"]) -- no remark
   assert(rows.liar:find "^3000 +%- .- 0 of 8$", rows.liar)
-  assert(rows.loop:find "^3001 .*it ran longer than the 4 s", rows.loop)
+  assert(rows.loop:find "^3001 .*it ran longer than the 1 s", rows.loop)
   assert(rows.wrong:find "^none +wrong%.lua:2: .*; no answer was checked", rows.wrong)
   assert(rows.fake:find "^none +fake%.lua:2: not so", rows.fake)
   assert(rows.flood:find "^none .*File too large", rows.flood)

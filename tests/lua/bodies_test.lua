@@ -37,15 +37,6 @@ test("a capacity that falls releases as a load that rises does", function()
     near(first(other:simulate { M = 0.6, t_end = 8 }, "slip").t, 5, 1e-12)
 end)
 
-test("without a normal load a mass moves freely, and a negative load counts as none", function()
-    local run = system { I = 1, k = 0, Rd = 1, normal = function(t) return 1 - t end }
-        :simulate { velocity0 = 2, t_end = 4 }
-    near(run:at(1), 2 - 1 / 2 + 1 / 6, 1e-12)
-    local theta, velocity = run:at(4)
-    near(velocity, 1.5, 1e-12)
-    near(theta, 2 - 1 / 3 + 3 * 1.5, 1e-12)
-end)
-
 test("friction may depend on angle, on a state, and on the speed", function()
     -- a wedge: while sliding down from theta0 > 0 friction c theta is a spring
     local run = system { I = 1, k = 4, Rd = function(t, theta) return 3 * math.abs(theta) end,
@@ -90,15 +81,6 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
 end)
 
-test("two bodies that stick to each other are one body with both inertias", function()
-    local M = function(t) return 3 * math.sin(t) end
-    local pair = pair({ I = 1, k = 4, Rd = 0.3 }, { I = 2 }, { Rd = 100 })
-        :simulate { M = { a = M }, t_end = 20, dt = 0.5 }
-    local one = system { I = 3, k = 4, Rd = 0.3 }:simulate { M = M, t_end = 20, dt = 0.5 }
-    near(pair.b.theta, one.theta, 1e-11)
-    equal(#pair.events, #one.events)
-end)
-
 test("continuing one body continues the run of all bodies", function()
     local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1, Rd = 0.2 }, b = { I = 1 } }, links = { link = { "a", "b", k = 4 } } }
     local run = rig:simulate { M = { a = math.sin }, t_end = 3, dt = 0.1 }
@@ -119,22 +101,6 @@ test("accelerations are those of the equation of motion, and 0 where a body is h
         states = { e = { rate = function() return 1 end } } }
     near(one.acceleration[1], -2.7 / 2, 1e-15)
     near(one.states.e[#one], 1, 1e-13)
-end)
-
-test("a gap between two bodies: momentum is conserved and the difference of speeds is turned back", function()
-    local run = pair({ I = 1 }, { I = 2 }, { walls = { lower = -1, upper = 1, restitution = 0.5 } })
-        :simulate { velocity0 = { a = 3 }, t_end = 1, dt = 0.5 }
-    local hit = first(run, "impact", "link")
-    near(hit.t, 1 / 3, 1e-14)
-    equal(hit.velocity, 3.0)
-    local _, velocity = run:at(0.9)
-    near(velocity.a + 2 * velocity.b, 3, 1e-14)
-    near(velocity.a - velocity.b, -1.5, 1e-14)
-    -- restitution 0: they go on together
-    run = pair({ I = 1 }, { I = 2 }, { walls = { upper = 1, restitution = 0 } })
-        :simulate { M = { a = 1 }, velocity0 = { a = 3 }, t_end = 2 }
-    equal(run.events.kind[1] .. " " .. run.events.kind[2], "impact stick")
-    near(run.link.theta[1001], 1, 1e-15)
 end)
 
 test("a pulse between the nodes is found while all bodies are at rest, also with a state", function()
@@ -273,16 +239,6 @@ test("a contact between a body that a belt carries and one at rest slips, though
     near(e.link.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
-test("a body is released when M exceeds a varying capacity, however long the run", function()
-    local rig = system { bodies = { b = { I = 2, k = 3, Rd = 0.3, normal = function(t) return 1 + 1.135 * math.sin(2.8376 * t) end } } }
-    for _, t_end in ipairs { 1, 2, 2.1, 3 } do
-        local run = rig:simulate { M = { b = excitation.harmonic { amplitude = 0.9, omega = 1.3 } }, t_end = t_end }
-        local t = run.events[1].t
-        equal(run.events[1].kind, "slip")
-        near(0.9 * math.sin(1.3 * t), 0.3 * (1 + 1.135 * math.sin(2.8376 * t)), 1e-12)
-    end
-end)
-
 test("a body that creeps does not change the motion or events of another one", function()
     local w, M = 2 * math.pi, excitation.harmonic { amplitude = 1, omega = 1.7 }
     local swings = { I = 1, k = 4, Rd = 0.1 }
@@ -415,17 +371,6 @@ test("each body and link has the states, and the events of the user with its own
         equal(reloaded(run[part]).z, run.states.z)
     end
     equal(table.concat(run.rod.names, " "), "t theta velocity torque friction z")
-end)
-
-test("the header of a file of several bodies names its integrator, and lists its times", function()
-    local rig = system { bodies = { a = { I = 1, k = 4 }, b = { I = 1 } } }
-    local times = {}
-    for i = 1, 25 do times[i] = i / 10 end
-    local run = rig:simulate { theta0 = { a = 1 }, times = times }
-    local back, file = reloaded(run)
-    assert(read(file):find("integrator = integrator.spectral", 1, true))
-    equal(back["a.theta"], run:column "a.theta")
-    equal(repeated(run).t, run.t)
 end)
 
 test("a body or link may be called like a field of one body, but not like a method", function()

@@ -39,20 +39,6 @@ test("half cycles are a list of tables, the same list each time, that sum to the
     near(half_cycles[#half_cycles - 1].dry, 2 * sys.Rd * X, 1e-9)
 end)
 
-test("columns have the values at the rows and end at the total", function()
-    assert(energy.t == run.t)
-    for _, name in ipairs { "input", "viscous", "dry" } do
-        local column = energy[name]
-        equal(#column, #run)
-        equal(column[1], 0.0)
-        near(column[#run], energy.total[name], 1e-13 * energy.total.flow)
-    end
-    near(energy.kinetic, sys.I / 2 * run.velocity ^ 2, 1e-14)
-    near(energy.spring, run.theta ^ 2 / 2, 1e-14)
-    assert(energy.error:abs():max() <= 1e-12 * energy.total.flow)
-    assert(energy.dry:diff() >= -1e-14, "dry friction gives nothing back")
-end)
-
 test("energy prints as a small table", function()
     local text = tostring(energy)
     has(text, "t 0 … 40", "input", "kinetic", "spring", "from 0.5 to", "viscous", "dry", "half cycles")

@@ -8,19 +8,6 @@ local function told(run)
     return (run:explain():gsub("%s+", " "))
 end
 
-test("the story has short lines and not too many, however long the run", function()
-    local run = nondimensional { friction_ratio = 0.836 }:simulate {
-        M = excitation.harmonic { frequency = 1 }, theta0 = 1, t_end = 1000, dt = 1 }
-    local count = 0
-    for line in (run:explain() .. "\n"):gmatch("([^\n]*)\n") do
-        count = count + 1
-        assert(#line < 80, line)
-    end
-    assert(count <= 25, count)
-    says(run, "repeats itself every 1 (the period of M)")
-    says(run, "... 1995 more ...")
-end)
-
 test("a run read from a file, one of 1989 and a failed one have a story, too", function()
     says(reloaded(free), "read from a file", "The velocity changes sign 3 times")
     says(nd:simulate { velocity0 = 2 * math.pi, t_end = 5, dt = 0.01, integrator = integrator.dinal1989 { h = 0.001 } },
@@ -165,8 +152,9 @@ test("the story has the numbers of a contact that is open at first, of the harde
     assert(at > 1)
     says(run, ("the hardest impact had velocity %.5g, at t = %.5g"):format(hit.velocity, hit.t))
     local law = friction.asymmetric { forward = { Rd = 0.1, Re = 0.2 }, backward = { Rd = 0.3, Re = 0.5 } }
-    says(system { I = 1, k = 1, friction = law }:simulate { theta0 = 1, t_end = 1 },
-        "Rd = 0.1 while sliding forward and 0.3 backward; breakaway takes Re = 0.2 forward and 0.5 backward")
+    local uneven = system { I = 1, k = 1, friction = law }:simulate { theta0 = 1, t_end = 9 }
+    says(uneven, "Rd = 0.1 while sliding forward and 0.3 backward; breakaway takes Re = 0.2 forward and 0.5 backward")
+    has_not(told(uneven), "2 Rd/k") -- by which the extremes of one Rd shrink
 end)
 
 finish()

@@ -148,11 +148,9 @@ test("friction that rises right before a stop is found, however low the speed", 
     for _, speed in ipairs { 1e-3, 0.03 } do
         local lua = friction.law(function(v) return Rd + (Re - Rd) * math.exp(-(v / speed) ^ 2) end)
         for _, law in ipairs { friction.stribeck { Rd = Rd, Re = Re, speed = speed }, lua } do
-            for _, belt in ipairs { false, function() return 0 end } do -- a run with more in it has an engine of its own
-                local stop = system { I = 1, k = 0, friction = law }:simulate { velocity0 = 1, t_end = 5, belt = belt or nil }.events[1]
-                -- The integral of v dv/friction.
-                near(stop.theta, 1 / (2 * Rd) - speed ^ 2 / (2 * Rd) * math.log(Re / Rd), 1e-12)
-            end
+            local stop = system { I = 1, k = 0, friction = law }:simulate { velocity0 = 1, t_end = 5 }.events[1]
+            -- The integral of v dv/friction.
+            near(stop.theta, 1 / (2 * Rd) - speed ^ 2 / (2 * Rd) * math.log(Re / Rd), 1e-12)
         end
     end
 end)
@@ -242,17 +240,8 @@ test("a mass that a pulse moves less each period comes to hold, alone and beside
     near(run.theta[#run], (M0 - 0.81) / 9, 1e-15)
     assert(run.events[#run.events].t < 60)
 
-    local body = { I = 1.6578576852002695, k = 4.929986288115886, C = 0.23996891000842135,
-        friction = friction.stribeck{ Rd = 0.5854384602164684, Re = 0.8046054384790812, speed = 0.4464779651828179 } }
-    local rig = system{ bodies = { a = body, b = { I = 1.910786644260484, C = 0.06226573933050629 } },
-        links = { l = { "a", "b", k = 1.845010522548859, C = 0.2403994963512761, Rd = 0.5014027380920488, Re = 0.6990133320033394 } } }
-    local T, M0 = 1.3708150554769, 1.0030911740663
-    run = rig:simulate{ M = { a = function(t) return t % T < 0.37 * T and M0 or -M0 / 2 end }, t_end = 400 * T }
-    equal(run.t_end, 400 * T)
-    near(M0 - 4.929986288115886 * run.a.theta[#run] - 0.8046054384790812, 0, 1e-9)
-
     -- Here a body and the freewheel behind it leave together.
-    rig = system{ bodies = {
+    local rig = system{ bodies = {
         a = { I = 1.2348302392074664, k = 7.067505931356604, C = 0.1601099096238591, friction = friction.stribeck{ Rd = 0.7431162703298131, Re = 0.8286578402037739, speed = 0.5105445003479095 } },
         b = { I = 1.8312269716371588, k = 7.067505931356604, C = 0.1784696596834161, friction = friction.stribeck{ Rd = 0.7360226583113975, Re = 0.8796659446932642, speed = 0.32106061224699917 } },
         c = { I = 1.7138111173793802, C = 0.05319277253916215, Rd = 0.43160320673749775, Re = 0.4474096104546757 } }, links = {

@@ -23,6 +23,7 @@ test("driven records of all kinds are fitted, whatever is given: no value is man
     math.randomseed(3)  -- of such records one in twenty was fitted badly, and one in a hundred had errors of next to nothing
     local names = { "I", "k", "C", "Rd", "Re", "offset" }
     local judged, part, ratio = judge()
+    local accused = 0
     for _ = 1, 20 do
         local I, w0 = 10^(2 * math.random() - 1.5), 2 * math.pi * (0.5 + 1.5 * math.random())
         local k, zeta = I * w0^2, 0.005 + 0.1 * math.random()
@@ -47,6 +48,7 @@ test("driven records of all kinds are fitted, whatever is given: no value is man
             asked.data = { t = run.t, theta = run.theta + noise + 0.1 }
             local fit = identify(asked)
             assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), tostring(s))
+            accused = accused + (fit.misfit and 1 or 0)
             for name, value in pairs(truth) do
                 local told = (fit.std_error[name] or 0) > 0
                 assert(not told or math.abs(fit[name] - value) < 6 * fit.std_error[name], name .. " of " .. tostring(s))
@@ -55,6 +57,7 @@ test("driven records of all kinds are fitted, whatever is given: no value is man
         end
     end
     assert(part >= 0.90 and ratio <= 1.3, part .. " " .. ratio)
+    equal(accused, 0) -- white noise is never called a wrong model
 end)
 
 test("a fit in a wrong valley is tried again: viscous friction for dry, or another natural frequency", function()

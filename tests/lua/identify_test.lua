@@ -21,7 +21,7 @@ end)
 test("decays of all kinds are identified: 0.1 to 3 % of noise, from seconds to hours, Re = Rd or more", function()
     math.randomseed(7)
     local judged, part, ratio = judge()
-    local records = lots(100)
+    local records, accused = lots(100), 0
     for seed = 1, records do
         local I, k = 10^(4 * math.random() - 2), 10^(4 * math.random() - 2)
         local viscous = math.random() < 0.3 and 0 or 0.15 * math.random()^2
@@ -32,10 +32,12 @@ test("decays of all kinds are identified: 0.1 to 3 % of noise, from seconds to h
             dt = t_end / math.random(100, 600) }
         local fit = identify{ data = record(run, seed, std, 0.3) }
         assert(fit.noise < std * (1 + 3 / (2 * #run)^0.5), tostring(s))
+        accused = accused + (fit.misfit and 1 or 0)
         part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = dry, offset = 0.3, theta0 = 1,
             velocity0 = run.velocity[1] })
     end
     assert(records < 100 or part >= 0.90 and part <= 0.98 and ratio <= 1.3, part)
+    assert(accused <= 1, accused) -- such a record fits the model
 end)
 
 test("given values have no error, and a misspelt field is an error", function()
@@ -250,35 +252,6 @@ test("a record that the fit does not explain is reported, and one with white noi
     equal(says(honest.theta), "explained")
 end)
 
-test("records that were once fitted badly are explained as well as by the true parameters", function()
-    local sine = excitation.harmonic
-    local function two(A, w) return sine{ amplitude = A, omega = w } + sine{ amplitude = A / 2, omega = 2.3 * w, phase = 1 } end
-    local w = 2 * math.pi
-    for what, case in pairs{
-        ["half a swing"] = { { I = 1, k = 70.70329641661147, C = 9.789428855540965, Rd = 6.275935935663146 },
-            { theta0 = 0.73507176709916, t_end = 4.9446161586827, dt = 4.9446161586827 / 334 }, seed = 92, std = 0.013017970259308, shift = -0.042899731623798,
-            tells = { "omega0" } },
-        ["a few swings with much noise, which may rest a turn later"] = {
-            { I = 1, k = w * w, C = 2 * 0.19175827349652 * w, Rd = 0.12893769535422 * w * w },
-            { theta0 = 1, t_end = 2.0547377730242, dt = 2.0547377730242 / 99 }, seed = 160, std = 0.064778531849788, shift = 0.05,
-            tells = { "zeta" } },
-        ["from rest"] = { { I = 0.8065722635887876, k = 8.162909982043423, C = 0.058993674619469375, Rd = 0.05716612383650104, Re = 0.10199606336583687 },
-            { M = two(0.06919591396381658, 3.861926729346574), t_end = 56.284217787703, dt = 56.284217787703 / 209 }, seed = 120, std = 1.6e-5, tells = { "k" } },
-        ["from rest, too"] = { { I = 1.4712485036331644, k = 5.015761548156815, C = 0.29282687091363013, Rd = 0.1065063299168521, Re = 0.1622840621833471 },
-            { M = two(0.15668360273354226, 1.1755756848432004), t_end = 17.865527211055, dt = 17.865527211055 / 231 }, seed = 144, std = 2.2e-4, tells = { "k" } },
-        ["a search that did not end"] = { { I = 1, k = 40, C = 0.6, Rd = 1.2, Re = 2.2 },
-            { M = sine{ amplitude = 10, frequency = 0.45 } + sine{ amplitude = 5, frequency = 1.3 }, theta0 = -0.0041871951484979, t_end = 12, dt = 0.03 },
-            seed = 11, std = 0.006, shift = 0.1, tells = { "k" } },
-    } do
-        local s = system(case[1])
-        local run = s:simulate(case[2])
-        local noise = vector.normal{ n = #run, seed = case.seed, std = case.std }
-        local fit = identify{ data = { t = run.t, theta = run.theta + noise + (case.shift or 0) }, M = case[2].M }
-        assert(fit.residual:dot(fit.residual) < 1.02 * noise:dot(noise), what)
-        for _, name in ipairs(case.tells) do near(fit[name], s[name], 4 * fit.std_error[name]) end
-    end
-end)
-
 test("an invalid sample is named", function()
     local run = system{ I = 1, k = 40, C = 0.1, Rd = 0.4 }:simulate{ theta0 = 0.2, t_end = 10, dt = 1/60 }
     for _, wild in ipairs{ 5, 0.5 } do
@@ -300,25 +273,6 @@ test("no error is below the rounding of doubles, and a held offset and a missing
         assert(not tostring(identify{ data = decay, I = 1, free = free or nil }):find("held at 0", 1, true))
     end
     raises_here(function() identify{ data = decay, k = 0 } end, "k = 0 must be positive: identify needs a spring; without one give a k so small")
-end)
-
-test("correlated noise widens the errors, and is reported; white noise does neither", function()
-    local M = excitation.harmonic { amplitude = 1, omega = 1.7 } + excitation.harmonic { amplitude = 0.5, omega = 4 }
-    local run = system { I = 1, k = 4, C = 0.2, Rd = 0.2 }:simulate { M = M, theta0 = 0.4, t_end = 20, dt = 0.05 }
-    local within, told = 0, 0
-    for seed = 1, 12 do
-        local white, x, colored = vector.normal { n = #run.t, std = 0.003, seed = seed }, 0, {}
-        for i = 1, #run.t do
-            x = 0.9 * x + white[i]
-            colored[i] = x
-        end
-        local fit = identify { data = data { t = run.t, theta = run.theta + vector(colored) }, M = M }
-        if math.abs(fit.k - 4) < 2 * fit.std_error.k then within = within + 1 end
-        if tostring(fit):find "correlated from sample to sample" then told = told + 1 end
-        equal(fit.misfit, nil)
-        if seed % 4 == 0 then equal(#identify { data = data { t = run.t, theta = run.theta + white }, M = M }.notes, 0) end
-    end
-    assert(within >= 10 and told == 12, within .. " " .. told) -- 95 %; without the memory half of them
 end)
 
 local rich = excitation.harmonic{ amplitude = 1.2, omega = 1.7 } + excitation.harmonic{ amplitude = 0.5, omega = 4 }
@@ -366,24 +320,6 @@ test("a wrong model is also reported for a free decay, with a guess and for seve
     equal(identify{ data = d, M = M, system = two{ C = 0.2 }, free = { "motor.I" }, measured = "shaft.theta" }.misfit, "velocity")
 end)
 
-test("records with white noise are never called wrong, and their errors cover the truth", function()
-    local run = moved()
-    local names, inside, twice, all = { "I", "k", "C", "Rd" }, 0, 0, 0
-    for seed = 1, lots(30) do
-        local fit = identify{ data = record(run, seed, 0.003), M = rich }
-        equal(fit.misfit, nil)
-        equal(#fit.notes, 0)
-        for _, name in ipairs(names) do
-            local z = math.abs(fit[name] - plain[name]) / fit.std_error[name]
-            inside, twice, all = inside + (z < 1 and 1 or 0), twice + (z < 2 and 1 or 0), all + 1
-        end
-    end
-    -- 68 and 95 %, three binomial deviations of the 30 records, as the numbers of one hang together
-    local n = all / #names
-    near(inside / all, 0.683, 3 * (0.683 * 0.317 / n)^0.5)
-    near(twice / all, 0.954, 3 * (0.954 * 0.046 / n)^0.5)
-end)
-
 test("a small misfit widens the errors by how far it moves the values", function()
     local s = moved{ spring = spring.polynomial{ [3] = 0.005 } }
     local told, within, all = 0, 0, 0
@@ -399,20 +335,6 @@ test("a small misfit widens the errors by how far it moves the values", function
         end
     end
     assert(told > 6 and within / all > 0.85, told .. " " .. within .. " of " .. all)
-end)
-
-test("the errors account for an instrument with steps, which errs equally while the mass rests", function()
-    local judged, part, ratio = judge()
-    for seed = 1, lots(20) do
-        math.randomseed(seed)
-        local s = system{ I = 1, k = 3 + math.random(), C = 0.1 + 0.1 * math.random(), Rd = 0.1 + 0.1 * math.random() }
-        local run = s:simulate{ theta0 = 1 + math.random(), t_end = 20, dt = 0.05 }
-        local steps = run.theta:map(function(x) return math.floor(x / 0.012 + 0.5) * 0.012 end)
-        local fit = identify{ data = { t = run.t, theta = steps } }
-        equal(fit.misfit, nil)
-        part, ratio = judged(fit, { omega0 = s.omega0, zeta = s.zeta, Rd_over_k = s.Rd / s.k, offset = 0 })
-    end
-    assert(part > 0.85 and ratio < 1.4, part .. " " .. ratio)  -- 30 to 40 % and up to 6 when samples at rest count as independent
 end)
 
 test("Re of a free decay lies between what holds the mass at rest and what would have held it a turn earlier", function()

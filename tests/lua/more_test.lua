@@ -233,27 +233,6 @@ test("states and events without effect leave the motion of rk4 unchanged", funct
     end
 end)
 
-test("rk4 integrates states with the motion, at rest, and between its steps", function()
-    local beside = { z = { start = 0, rate = function(t) return math.cos(t) end } }
-    for _, sys in ipairs { stick_slip, system { I = 1, k = 0, Rd = 20, Re = 20 } } do
-        for _, M in pairs(loads) do
-            local run = sys:simulate { M = M, theta0 = 0.7, states = beside, t_end = 7, dt = 0.0317, integrator = steps }
-            for i = 1, #run, 10 do near(run.z[i], math.sin(run.t[i]), 1e-12) end
-            local _, _, z = run:at(4.5678)
-            near(z.z, math.sin(4.5678), 1e-12)
-        end
-    end
-end)
-
-test("rk4 reports the first turn of a body that starts from rest, also under functions of the motion", function()
-    local free = system { I = 1, k = 40, C = 0.2 }
-    local more = { states = { z = { start = 0, rate = function(_, theta) return theta end } } }
-    local plain = free:simulate { theta0 = 0.2, t_end = 3, integrator = steps }
-    same_events(free:simulate(merged({ theta0 = 0.2, t_end = 3, integrator = steps }, more)), plain, 1e-9)
-    local fed = { M = function(_, theta) return 0 * theta end, theta0 = 0.2, t_end = 3, integrator = steps }
-    same_events(free:simulate(merged(fed, { belt = 0 })), plain, 1e-9)
-end)
-
 test("rk4 locates events and conditions among steps that it makes in blocks", function()
     local wanted = {
         { when = function(_, theta) return theta - 0.12 end, name = "place" },

@@ -74,33 +74,6 @@ test("a body moved by its angle moves as by the corresponding velocity, also for
     near(by_angle.events.t, by_velocity.events.t, 1e-8)
 end)
 
-test("a narrow pulse of a moved body is found, or the gap is reported", function()
-    local A, width, at, C = 1, 1e-3, 7.123, 0.1
-    local function rig(theta)
-        return system { bodies = { cam = { theta = theta }, load = { I = 1, C = C } }, links = { shaft = { "cam", "load", k = 9 } } }
-    end
-    local function pulse(t) return A * math.exp(-((t - at) / width) ^ 2) end
-    local asked = 0
-    local function counted(t)
-        asked = asked + 1
-        return pulse(t)
-    end
-    -- The load swings after the impulse 9 times the area below the pulse.
-    local omega, later = math.sqrt(9 - C ^ 2 / 4), 3
-    local swings = 9 * A * width * math.sqrt(math.pi) * math.exp(-C / 2 * later) * math.sin(omega * later) / omega
-    local function near_truth(run)
-        near(run.load.theta[#run], swings, 1e-6 * math.abs(swings) * 10)
-        near(run.cam.theta[#run], 0, 1e-11)
-    end
-    local read = rig(pulse):simulate { t_end = at + later }
-    near_truth(read)
-    near_truth(rig(excitation.gaussian { amplitude = A, at = at, sigma = width / math.sqrt(2) }):simulate { t_end = at + later })
-    assert(not read.gap or read.gap < width / 10, read.gap)
-    local unread = rig(counted)
-    assert(unread:simulate { t_end = at + later }.gap > width)
-    near_truth(unread:simulate { t_end = at + later, integrator = integrator.spectral { narrowest = width } })
-end)
-
 test("rigid walls of a moved body are refused: they could not stop it", function()
     local moved = { theta = math.sin, walls = { upper = 0.5 } }
     raises_here(function() system { bodies = { cam = moved, b = { I = 1 } } } end,

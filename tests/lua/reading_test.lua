@@ -177,21 +177,6 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
         "integrator.exact{} supports only native terms")
 end)
 
-test("a variable that an event changes during a run is read at once", function()
-    local function final(extra)
-        local gain = 1
-        local run = system { I = 1, k = 0 }:simulate {
-            M = extra(function(t) return gain * (1 + 0 * t) end), t_end = 4, dt = 0.5,
-            events = { { name = "half", when = function(t) return t - 2 end, act = function() gain = 3 end } },
-        }
-        return run.outcome, run.velocity[#run]
-    end
-    local read = { final(function(f) return f end) }
-    local asked = { final(unread) }
-    equal(read[1], asked[1])
-    equal(read[2], asked[2])
-end)
-
 test("a formula may use theta, velocity and states, and a run is the same to the last bit", function()
     local function rows(M, integrator)
         return system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate {
@@ -386,22 +371,6 @@ test("kinks of abs, max and min are breaks", function()
     near(list[3], 3 * math.pi, 1e-14)
 end)
 
-test("no pulse is missed, however narrow", function()
-    math.randomseed(5)
-    local T0 = 2 * math.pi
-    for i = 1, 30 do
-        local at, width, height = math.random() * 15 * T0, 1e-6 * T0, 1e5
-        local table_of = { at = at, to = at + width }
-        local kinds = {
-            function(t) return t >= table_of.at and t < table_of.to and height or 0 end,
-            function(t) return math.max(0, 1 - math.abs(t - at - width / 2) * 2 / width) * 2 * height end,
-        }
-        local run = system { I = 1, k = 1 }:simulate { M = kinds[i % 2 + 1], t_end = 16 * T0, dt = T0 }
-        local wanted = width * height
-        near(math.sqrt(run.theta[#run] ^ 2 + run.velocity[#run] ^ 2), wanted, 1e-7 * wanted)
-    end
-end)
-
 test("conditions of theta are not breaks, those of t in the same function are", function()
     local e = excitation.scripted(function(t, theta, velocity)
         if theta > 0 then return t < 1 and 1 or 2 end
@@ -479,18 +448,6 @@ test("long strings are compared by content", function()
     end
 end)
 
-test("a folded time (t % T) used twice has its breaks in every period", function()
-    local functions = {
-        function(t) local x = t % 0.5 return x - x * x end,
-        function(t) local x = t % 0.5 return x * x - x end,
-        function(t) local x = t % 0.5 return x * (1 - x) * 4 end,
-        function(t) local x = t % 0.5 return (x + x) - x * x end,
-        function(t) local x = math.abs(t - 0.5) return x - x * x end,
-        function(t) local x = t // 0.5 return x * x - x end,
-    }
-    for i, f in ipairs(functions) do equal(excitation.scripted(f):next_break(0.1), 0.5, i) end
-end)
-
 test("a train of parabolas moves a mass as its closed form does", function()
     local sys = system { I = 1, k = 4, C = 0.2, Rd = 0.05 }
     local trains = {
@@ -540,21 +497,6 @@ test("a formula whose native terms would lose digits is integrated as a function
     local run = sys:simulate { M = f, t_end = 20, dt = 0.5 }
     equal(tostring(run.integrator), "integrator.spectral{}")
     near(run.M[11], f(run.t[11]), 5e-7)  -- to its own rounding
-end)
-
-test("a short window in a rate, a law of friction or the condition of an event is not missed", function()
-    local function window(t) return t > 3.3 and t < 3.31 end
-    local sys = system { I = 1, k = 4, C = 0.2 }
-    local q = { start = 0, rate = function(t) if t > 3.3 and t < 3.31 then return 100 end return 0 end }
-    near(sys:simulate { theta0 = 1, t_end = 10, dt = 10, states = { q = q } }.states.q[2], 1, 1e-12)
-    local function law(_, t) if t > 3.3 and t < 3.31 then return 50 end return 0 end
-    local pushed = system { I = 1, k = 0, friction = law }:simulate { velocity0 = 1, t_end = 10, dt = 10 }
-    near(pushed.velocity[2], 0.5, 1e-9)
-    local events = { { when = function(t) if t > 3.3 and t < 3.31 then return 1 end return -1 end } }
-    local found = of_kind(sys:simulate { theta0 = 1, t_end = 10, events = events }, "user")
-    equal(#found, 2)
-    near(found[1].t, 3.3, 1e-12)
-    assert(not window(found[2].t))
 end)
 
 test("code that was tampered with is read no further than it goes", function()

@@ -3,7 +3,7 @@ dofile "tests/lua/support.lua"
 local strangers = dofile "tests/lua/strangers.lua"
 
 -- In that time a long run needs more than 64M of memory.
-local options = "--safe --max-time 0.2 --max-memory 512M"
+local options = "--safe --max-time 0.1 --max-memory 512M"
 
 --- What Lua or the integrator itself can stop, where it is.
 strangers.check({
@@ -53,14 +53,14 @@ strangers.check({
     ["the energy, the story and plots of a run"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1e4, dt = 1 } while true do pcall(run.energy, run) pcall(run.explain, run) pcall(run.plot, run, { show = false }) end",
     ["a run that goes on and on"] = "local run = system{ I = 1, k = 0, C = 1 }:simulate{ M = 5, velocity0 = 1, t_end = 1, times = {}, dense = false, integrator = integrator.rk4{ h = 0.001 } } while true do pcall(run.continue, run, { t_end = 1e8 }) end",
     ["values in a loop"] = "local e, t = excitation.harmonic{ frequency = 1 }, vector.linspace(0, 1, 100) while true do pcall(e.values, e, t) end",
-}, options, 1, "dinal: stopped at [^\n]*script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+}, options, 1, "dinal: stopped at [^\n]*script:1: it ran longer than the 0.1 s that %-%-max%-time allows\n")
 
 local folder = os.tmpname()
 os.execute(("rm '%s' && mkdir '%s'"):format(folder, folder))
 local removed <close> = setmetatable({}, { __close = function() os.execute("rm -rf '" .. folder .. "'") end })
 strangers.check({
     ["a file that grows"] = "local run = nondimensional{}:simulate{ theta0 = 1, t_end = 100, dt = 1e-2 } local c = {} for i = 1, 1e4 do c[i] = 'theta' end while true do pcall(run.save, run, 'big.csv', { columns = c }) end",
-}, options, 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n", folder)
+}, options, 1, "dinal: stopped at script:1: it ran longer than the 0.1 s that %-%-max%-time allows\n", folder)
 test("a file that was not completely written is removed", function()
     equal(io.popen(("ls -A '%s'"):format(folder)):read "a", "")
 end)
@@ -72,7 +72,7 @@ strangers.check({
     ["table.move without end"] = "print 'seen' table.move({}, 1, 1e15, 2)",
     ["table.concat, insert and remove of a table that says it is long"] = "print 'seen' local t = setmetatable({}, { __len = function() return math.maxinteger end }) pcall(table.remove, t, 1) table.insert(t, 1, 1)",
     ["table.sort of a table that says it is long"] = "print 'seen' table.sort(setmetatable({}, { __len = function() return 1 << 30 end, __index = type, __newindex = rawequal }))",
-}, options, 1, "seen\ndinal: stopped[^\n]*: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+}, options, 1, "seen\ndinal: stopped[^\n]*: it ran longer than the 0.1 s that %-%-max%-time allows\n")
 
 -- The same limit for any script; finalizers, which only safe mode forbids, are ended with the program.
 strangers.check({
@@ -80,7 +80,7 @@ strangers.check({
     ["a script that waits"] = "io.popen('sleep 5'):read() while true do end",
     ["a finalizer that never ends"] = "setmetatable({}, { __gc = function() while true do end end }) collectgarbage()",
     ["a finalizer that never ends, at the end"] = "setmetatable({}, { __gc = function() while true do end end })",
-}, "--max-time 0.2", 1, "dinal: stopped[^\n]*: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+}, "--max-time 0.1", 1, "dinal: stopped[^\n]*: it ran longer than the 0.1 s that %-%-max%-time allows\n")
 
 -- A busy machine must not decide: what only waits may do so ten times as long.
 strangers.check({
@@ -91,6 +91,6 @@ strangers.check({
 strangers.check({
     ["a run with more breaks than steps"] = "nondimensional{}:simulate{ M = excitation.square{ frequency = 1e13 }, t_end = 1, dt = 1, integrator = integrator.rk4{ h = 0.01 } }",
     ["a run of dinal1989 with more breaks than steps"] = "nondimensional{}:simulate{ M = excitation.square{ frequency = 2e5 }, t_end = 1e9, dt = 1e9, integrator = integrator.dinal1989{ h = 0.1 } }",
-}, "--max-time 0.2", 1, "dinal: stopped at script:1: it ran longer than the 0.2 s that %-%-max%-time allows\n")
+}, "--max-time 0.1", 1, "dinal: stopped at script:1: it ran longer than the 0.1 s that %-%-max%-time allows\n")
 
 finish()

@@ -62,16 +62,6 @@ test("missing, superfluous and misspelt options are errors that suggest the righ
     raises_here(function() nd.simulate { t_end = 1, dt = 0.1 } end, "use a colon: sys:simulate{")
 end)
 
-test("values of a wrong kind are errors that name the option and the value", function() -- option_rows_test.lua has all of them
-    refuses(function(o) nd:simulate(o) end, {
-        { { t_end = "1", dt = 0.1 }, "t_end must be a finite number", 'the string "1"' },
-        { { t_end = 1, dt = 0.1, velocity0 = 0 / 0 }, "velocity0 must be a finite number", "nan" },
-        { { t_end = 1, dt = 0.1, M = "sin" }, "M must be a function, a number or an excitation", '"sin"' },
-        { { t_end = 1, dt = 0.1, M = 0 / 0 }, "M must be finite" },
-        { { t_end = 1, dt = 0.1, integrator = integrator.rk4 }, "integrator must be an integrator" },
-    })
-end)
-
 test("impossible windows and grids are errors with their values", function()
     refuses(function(o) nd:simulate(o) end, {
         { { t_end = 0, dt = 0.1 }, "t_end = 0 must be after t_start = 0" },

@@ -25,19 +25,6 @@ test("with changes a spring, or removes it", function()
     equal(sys.dead_zone, nil)  -- Re/k is none any more
 end)
 
-test("a run with its own spring and states can be continued to a steady motion", function()
-    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.05, spring = duffing }
-    local M = excitation.harmonic { frequency = 0.1 }
-    local half = sys:simulate { M = M, t_end = 10, dt = 1 }
-    near(half:continue { t_end = 20 }.theta[21], sys:simulate { M = M, t_end = 20, dt = 1 }.theta[21], 1e-10)
-    local more = sys:simulate { M = M, t_end = 20, dt = 1, states = { z = { rate = function(t, theta) return theta end } } }
-    near(more.theta[21], half:continue { t_end = 20 }.theta[21], 1e-10)
-    local s = sys:steady { M = M }
-    equal(s.status, "steady")
-    near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
-    near(sys:response { over = { frequency = vector.linspace(0.1, 0.2, 2) }, between = true }.amplitude[1], s.amplitude, 1e-7)
-end)
-
 test("a spring that fails is reported with the angle and its line, and the rows until then are kept", function()
     local soft = system { I = 1, k = 1, spring = function(theta) return theta < 1.5 and theta or nil end }
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-9 } } do
@@ -66,21 +53,6 @@ test("each mistake in a spring is one sentence with the name of the option", fun
         { { [3] = 1 / 0 }, "[3] must be a finite number, got inf" },
     })
     raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
-end)
-
-test("a stiff contact that is touched only briefly is found", function()
-    local stiff = 1e4
-    local function contact(theta) return theta > 0.5 and stiff * (theta - 0.5) or 0 end
-    for _, Rd in ipairs { 0, 0.05 } do
-        for _, belt in ipairs { false, function() return 0 end } do
-            local velocity = math.sqrt(0.5001 ^ 2 + Rd)  -- it comes to 0.5001 if nothing is there, more or less
-            local turn = system { I = 1, k = 1, Rd = Rd, spring = contact }:simulate {
-                velocity0 = velocity, belt = belt or nil, t_end = 2.5, dt = 2.5 }.events[1]
-            -- velocity^2 = theta^2 + 2 Rd theta + stiff (theta - 1/2)^2
-            local a, b, c = 1 + stiff, Rd - stiff / 2, stiff / 4 - velocity ^ 2
-            near(turn.theta, (math.sqrt(b ^ 2 - a * c) - b) / a, 1e-11)
-        end
-    end
 end)
 
 test("a motion that a softening spring releases ends with a message about the motion, not about M", function()

@@ -34,24 +34,6 @@ test("elastic stops equal the torque that a user can write as M", function()
     end
 end)
 
-test("a block that leaves a damped stop still compressed reaches the other one in time", function()
-    -- It leaves the lower stop before it is out of it, and flies freely to the upper one in one stretch.
-    local run = system { I = 1, k = 0, walls = { lower = -1, upper = 1, stiffness = 40, damping = 4 } }:simulate { velocity0 = -1, t_end = 8 }
-    local impacts = of_kind(run, "impact")
-    near(impacts.t[1], 1, 1e-13)
-    equal(impacts.theta[2], 1.0)
-    local release = of_kind(run, "release")[1]
-    near(impacts.t[2], release.t + (1 - release.theta) / release.velocity, 1e-12)
-    closes(run)
-end)
-
-test("stiff stops are rigid walls", function()
-    local function run(walls) return system { I = 1, k = 4, walls = walls }:simulate { theta0 = -1, t_end = 10 } end
-    local stiff, rigid = run { upper = 0.5, stiffness = 1e10 }, run { upper = 0.5 }
-    near(stiff.theta, rigid.theta, 1e-3)
-    equal(#of_kind(stiff, "impact"), #of_kind(rigid, "impact"))
-end)
-
 test("a link has elastic stops, and a body may rest on them", function()
     local rig = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { gap = { "a", "b", walls = { lower = -0.1, upper = 0.1, stiffness = 50, damping = 1 } } } }
     local run = rig:simulate { velocity0 = { a = 1 }, t_end = 3 }

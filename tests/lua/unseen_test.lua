@@ -205,20 +205,6 @@ test("a rise from almost zero to a peak is not a native term", function()
     end
 end)
 
-test("a push in the spring of a link changes the energy by its work", function()
-    for _ = 1, 20 do
-        local a, w = lot(.05, .2), 10 ^ lot(-7, -4)
-        local b, area = a + w, lot(-.1, .1)
-        local push = area / (b - a)
-        local function spring(angle) return 8 * angle ^ 3 - (angle > a and angle < b and push or 0) end
-        local rig = system { bodies = { a = { I = 1 }, b = { I = 2 } }, links = { l = { "a", "b", spring = spring } } }
-        local run = rig:simulate { velocity0 = { a = 2, b = .5 }, t_end = .2, dt = 1 }
-        local theta, v = run:at(.2)
-        assert(theta.a - theta.b > b)
-        near(v.a ^ 2 / 2 + v.b ^ 2 + 2 * (theta.a - theta.b) ^ 4, 2.25 + area, 1e-9)
-    end
-end)
-
 test("a pulse in a velocity window is followed although its formula has no bounds outside", function()
     local S = system { I = 1, k = 17, C = .1 }
     local function after(M) return select(2, S:simulate { velocity0 = 6.8, t_end = .3, dt = 1, M = M }:at(.3)) end
@@ -253,29 +239,6 @@ test("an unproven function is reported as the gap", function()
     near(sampled { k = 1, spring = function(theta) return math.sin(theta) end }, .005, 1e-12)
     near(sampled { k = 1, friction = function(speed) return .1 + speed end }, .005, 1e-12)
     equal(sampled { k = 1, Rd = .1 }, nil)
-end)
-
-test("a window that the square of a wide quantity decides is found, on whatever swing", function()
-    -- The same windows, written by two lines each, have long been found.
-    local function square(x) if x * x < 1 then return (1 - x * x) ^ 2 end return 0 end
-    local function lines(x) if x > -1 and x < 1 then return (1 - x * x) ^ 2 end return 0 end
-    local function root(x) return math.sqrt(math.max(0, 1 - x * x)) end
-    local function root_of_lines(x) if x > -1 and x < 1 then return math.sqrt(1 - x * x) end return 0 end
-    local swing = { I = 1, k = 4, C = .2 }
-    for _ = 1, 30 do
-        local p, w = lot(-.5, .5), 10 ^ lot(-5, -1.5)
-        for _, pair in ipairs { { square, lines }, { root, root_of_lines } } do
-            local ends = {}
-            for i, f in ipairs(pair) do
-                local function M(t, theta, v) return .1 / w * f((theta - p) / w) end
-                ends[i] = system(swing):simulate { M = M, theta0 = -1, t_end = 4, dt = 1 }
-            end
-            local a, b = ends[1], ends[2]
-            local apart = math.abs(a.theta[#a.theta] - b.theta[#b.theta])
-            local gap = math.max(a.gap or 0, b.gap or 0)
-            assert(apart < 1e-8 or gap > w / 4, ("p %.17g w %.17g: %g apart, gap %g"):format(p, w, apart, gap))
-        end
-    end
 end)
 
 test("an event right before a kink of its function is located although the old formula overflows beyond it", function()

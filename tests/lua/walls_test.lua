@@ -154,35 +154,6 @@ test("a body that leaned on another goes on when that one stops dead at a wall",
     end
 end)
 
-test("rk4 makes the same steps with walls out of reach as without walls, and has its energy", function()
-    local far = { lower = -50, upper = 50 }
-    local cases = {
-        { { C = 0.1, Rd = 0.3, Re = 0.5 }, excitation.harmonic { amplitude = 1.2, omega = 1.3 } },
-        { { C = 0.1 }, excitation.harmonic { amplitude = 1.2, omega = 1.3 } },
-        { { Rd = 0.2, Re = 0.2 }, excitation.square { amplitude = 0.7, omega = 0.9 } },
-        { { C = 0.1, Rd = 0.3, Re = 0.5 }, function(t) return 1.2 * math.sin(1.3 * t) end },
-    }
-    for _, case in ipairs(cases) do
-        local system_with = function(more) return system { I = 1, k = 4, C = case[1].C, Rd = case[1].Rd, Re = case[1].Re, walls = more } end
-        local options = { M = case[2], velocity0 = 2, t_end = 20.013, dt = 0.0171, integrator = integrator.rk4 { h = 0.01 } }
-        local plain, walled = system_with(nil):simulate(options), system_with(far):simulate(options)
-        equal(#walled.events, #plain.events)
-        for i, event in ipairs(plain.events) do
-            equal(walled.events[i].kind, event.kind)
-            near(walled.events[i].t, event.t, 1e-6)
-        end
-        local first = plain.events[1].t - 0.02
-        for row = 1, #plain do
-            near(walled.theta[row], plain.theta[row], plain.t[row] < first and 1e-13 or 1e-6)
-            if row % 50 == 7 then near(walled:at(walled.t[row]), walled.theta[row], 1e-13) end
-        end
-        local energy = walled:energy()
-        assert(energy.total.closure < 1e-7)
-        assert(energy.error:abs():max() <= 1e-7 * energy.total.flow)
-        near(energy.dry[#walled], energy.total.dry, 1e-12 * energy.total.flow)
-    end
-end)
-
 test("a body that comes to rest at a wall does not stop the others meanwhile", function()
     local bodies = { a = { I = 1, walls = { lower = 0, restitution = 0.5 } }, b = { I = 1, k = 4 } }
     local run = system { bodies = bodies }:simulate { M = { a = -1 }, theta0 = { a = 1, b = 1 }, t_end = 20 }

@@ -108,18 +108,10 @@ class Objects(unittest.TestCase):
                                         d=self.run)), [*self.run.names[1:], "also", "new"])
         self.assertEqual(dinal.lua("{ 1, nil, 3, x = 5 }"), {1: 1, 3: 3, "x": 5})
 
-    def test_order_in_each_process(self):
-        said = {python("import pandas; r = dinal.system(I=1, k=4, Rd=.3).simulate(theta0=1, t_end=5)\n"
-                       "s = dinal.system(bodies=dict(z=dict(I=1), a=dict(I=1)), links=dict(y=('z', 'a', dict(k=1)), b=('a', 'z', dict(C=1))))\n"
-                       "print(list(pandas.DataFrame(r)), list(r[0]), list(r.events[0]), list(dict(r)), list(r.energy().total), r.energy().half_cycles[0],"
-                       "list(pandas.DataFrame(r.events)), s.bodies, s.links, dinal.nondimensional(zeta=.1).steady(M=dinal.excitation.harmonic(frequency=1))"
-                       ".multipliers)", env={**os.environ, "PYTHONHASHSEED": seed}).stdout for seed in "123"}
-        self.assertEqual(len(said), 1)
-        self.assertNotEqual(said, {""})
-
     def test_links(self):
         links = dict(clutch=("motor", "load", dict(Rd=2)))
         rig = dinal.system(bodies=dict(motor=dict(I=1), load=dict(I=3)), links=links)
+        self.assertEqual((list(rig.bodies), list(rig.links)), (["load", "motor"], ["clutch"]))
         self.assertAlmostEqual(rig.simulate(velocity0=dict(motor=3), t_end=4).motor.velocity[-1], .75, 12)
         self.assertEqual(links, dict(clutch=("motor", "load", dict(Rd=2))))
         weights = dinal._objects.link_of(({"carrier": 2.5, "sun": -1}, dict(rigid=True)))
@@ -825,12 +817,6 @@ print(shell.object_inspect_text("sys_.simulate"))
 
 class Truth(unittest.TestCase):
     """The numbers of the reference cases."""
-
-    def test_figure_22(self):
-        run = dinal.nondimensional(friction_ratio=.167).simulate(velocity0=2 * math.pi, t_end=3)
-        self.assertAlmostEqual(run.events[0].theta, .846848608, 8)
-        self.assertAlmostEqual(run.events[-1].theta, .155151392, 8)
-        self.assertAlmostEqual(run.events[-1].t, 1.723664157, 8)
 
     def test_a_sheet_of_the_lab(self):
         """Two of its answers; tests/lab has them all."""

@@ -92,10 +92,11 @@ void draw_system(Lot& lot, MixedCase& c) {
     c.truth.holding = {Re, Re};
     switch (lot.of(6)) {
         case 0: {
-            const double other = Rd * lot.between(0.3, 1);
-            p.friction = model::laws::AsymmetricCoulomb{.forward = {Rd, Re}, .backward = {other, Re}};
+            const double other = Rd * lot.between(0.3, 1), holds = other * lot.between(1, 2);
+            p.friction = model::laws::AsymmetricCoulomb{.forward = {Rd, Re}, .backward = {other, holds}};
+            c.truth.holding[0] = holds;
             c.truth.sliding = {{[=](int way, real) -> real { return way > 0 ? Rd : other; }}};
-            c.say("forward Rd {:.17g} Re {:.17g}, backward Rd {:.17g}", Rd, Re, other);
+            c.say("forward Rd {:.17g} Re {:.17g}, backward Rd {:.17g} Re {:.17g}", Rd, Re, other, holds);
             break;
         }
         case 1: {
