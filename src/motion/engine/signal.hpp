@@ -122,8 +122,9 @@ public:
     /// `again`.
     void decide(const Moment& at, std::uint64_t again) {
         if (!has_pieces_ || (law_ && law_->way == 0) || slide_) return;
-        const bool stays = std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
-                                        [again](const auto& condition) { return (condition.of & again) != 0; });
+        // Where time alone takes another branch, a piece without conditions gains some.
+        const bool stays = ~again != 0 && std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
+                                                       [again](const auto& c) { return (c.of & again) != 0; });
         if (is_held() && stays && !crossed_) return;
         crossed_ = false;
         // A joint about to slip counts as moving already.
