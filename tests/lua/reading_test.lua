@@ -230,6 +230,37 @@ test("functions of several bodies, of the speed, and rates of states are read wi
     assert(#x.events > 3 and #one.events > 3)
 end)
 
+test("a body or a state may be named by a constant, a variable, a field or an argument", function()
+    local name, config, keys = "a", { body = "a" }, { "a" }
+    local function angle(theta, key) return theta[key] end
+    local ways = {
+        function(t, theta) return theta.a > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[name] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[config.body] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[keys[1]] > 0.2 and -1 or 0.5 end,
+        function(t, theta) local key = "a" return theta[key] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return angle(theta, name) > 0.2 and -1 or 0.5 end,
+    }
+    local rig = pair({ I = 1, k = 1 }, { I = 1, k = 2 }, { k = 1 })
+    local first
+    for _, M in ipairs(ways) do
+        local run = rig:simulate { M = { a = M }, t_end = 10, dt = 0.5 }
+        equal(run.gap, nil)
+        first = first or run
+        equal(run.a.theta, first.a.theta)
+    end
+    -- A state whose rate and name come from variables switches M where the constant name does.
+    local function switches(of)
+        local run = system { I = 1, k = 1 }:simulate { M = function(t, theta, v, z) return of(z) > 0.3 and 1 or 0 end, t_end = 10,
+            states = { a = { start = 0, rate = function() return 0.1 end } } }
+        equal(run.gap, nil)
+        return run.theta
+    end
+    equal(switches(function(z) return z[name] end), switches(function(z) return z.a end))
+    local ok, message = pcall(rig.simulate, rig, { M = { a = function(t, theta) return theta[1] end }, t_end = 1 })
+    assert(not ok and message:find "there is no body '1'", message)
+end)
+
 local function before(x)
     local n = string.unpack("i8", string.pack("d", x))
     return x > 0 and string.unpack("d", string.pack("i8", n - 1)) or x - 5e-324
