@@ -415,6 +415,18 @@ test("kinks of abs, max and min are breaks", function()
     list = breaks(function(t) return math.abs(math.sin(t)) end, 0.1, 10)
     equal(#list, 3)
     near(list[3], 3 * math.pi, 1e-14)
+    -- A kink stays one on its way through variables, max and min, and beside another that turns back at the same time.
+    local max, min, abs = math.max, math.min, math.abs
+    for i, f in ipairs {
+        function(t) return max(0, 1 - abs(t - 3)) end,
+        function(t) return 3 + 0.5 * max(0, min(5, 1 - abs(t - 3))) end,
+        function(t) local x = 1 - abs(t - 3) return x > 0 and x or 0 end,
+        function(t) local x = 1 - abs(t - 3) x = x < 0 and 0 or x return x end,
+        function(t) if t < 2 or t > 4 then return 0 end return abs(t - 3) + 2 * abs(3 - t) end,
+        function(t) if t < 2 or t > 4 then return 0 end local x = abs(t - 3) return x * x * x + x end,
+    } do
+        equal(table.concat(breaks(f, 0, 10), " "), "2.0 3.0 4.0", i)
+    end
 end)
 
 test("no pulse is missed, however narrow", function()
