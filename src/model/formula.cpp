@@ -751,8 +751,12 @@ bool Formula::is_dubious(double t, double found) {
     constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
     if (found == never || is_of_excitation(found)) return false;
     if (found - t < std::max(close * std::fabs(t), span_ / most_breaks)) return true;
-    const double jump = std::fabs(value(found, {}, {}) - value(std::nextafter(found, -never), {}, {}));
-    if (!(jump > 0)) return false;
+    const double before = std::nextafter(found, -never);
+    const auto change = [&](double from, double to) { return std::fabs(value(to, {}, {}) - value(from, {}, {})); };
+    const double jump = change(before, found);
+    // At a steep kink the value also changes between two doubles, as it does beside it.
+    const double few = 8 * (found - before);
+    if (!(jump > change(before - few, before) + change(found, found + few))) return false;
     constexpr int places = 50;
     for (int n = 0; n < places && !knows_greatest_; ++n) {
         const double there = std::fabs(value(found + span_ * n / places, {}, {}));

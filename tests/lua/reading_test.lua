@@ -429,6 +429,35 @@ test("kinks of abs, max and min are breaks", function()
     end
 end)
 
+test("steep kinks of a train of narrow pulses are breaks in each period, whatever is added", function()
+    for _, w in ipairs { 1e-6, 1e-5, 1e-4, 1.14981e-3, 1e-2, 0.1 } do
+        for _, c in ipairs { 0, 0.5, -3, 20 } do
+            for _, A in ipairs { 0.1, 1, 1 / w } do
+                local triangle = function(t)
+                    return c + A * math.max(0, 1 - math.abs((t - 0.487 - 2.7 * math.floor((t - 0.487) / 2.7 + 0.5)) / w))
+                end
+                local window = function(t)
+                    local x = ((t - 0.487 + 1.35) % 2.7 - 1.35) / w
+                    return c + A * (math.abs(x) < 1 and 1 - x * x or 0)
+                end
+                for _, f in ipairs { triangle, window } do
+                    local what = ("w %g, c %g, A %g"):format(w, c, A)
+                    local list, pulses = breaks(f, 0, 108), 0
+                    for _, b in ipairs(list) do
+                        if math.abs((b - 0.487 + 1.35) % 2.7 - 1.35 + w) < 1e-9 then pulses = pulses + 1 end
+                    end
+                    equal(pulses, 40, what)
+                    local run = system { I = 1, k = 0 }:simulate { M = f, t_end = 108, dt = 108 }
+                    equal(run.gap, nil)
+                    local area = 40 * A * w * (f == triangle and 1 or 4 / 3)
+                    local rounding = 1e-12 * (108 * math.abs(c) + area) + 2e-14 * area / w
+                    assert(math.abs(run.velocity[2] - 108 * c - area) < rounding, what)
+                end
+            end
+        end
+    end
+end)
+
 test("no pulse is missed, however narrow", function()
     math.randomseed(5)
     local T0 = 2 * math.pi
