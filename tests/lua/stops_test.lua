@@ -124,4 +124,19 @@ test("the energy stored by a pressed stop is the same at the end as in the last 
     near(e.finish.kinetic, e.kinetic[#run], 1e-13)
 end)
 
+-- Long runs in which a contact stands at its limit to rounding, at times: each ended in "switched endlessly".
+local function runs(system_of, o)
+    local run = system(system_of):simulate(o)
+    assert(run.status ~= "failed", run.outcome)
+    return run
+end
+
+test("a motion that leaves its rest is not asked for more than the rounding of M", function()
+    local table_of = friction.table { speed = { 0, 0.3, 1.2 }, torque = { 0.4527, 0.3522, 0.5416 } }
+    local rig = { bodies = { a = { I = 1.48, C = 0.08, k = 0.407, friction = table_of }, b = { I = 0.931, k = 1.393 } },
+        links = { l = { "a", "b", ratio = 2.229, Rd = 0.255, k = 0.893, normal = function(t) return math.max(0, 1 + 1.486 * math.sin(1.004 * t)) end } } }
+    local M = function(t) return math.max(-0.559, math.min(0.359, 1.118 * math.sin(1.4356 * t + 4.306))) end
+    for i = 0, 5 do runs(rig, { M = { a = M }, t_start = 600 * i, t_end = 600 * i + 600 }) end
+end)
+
 finish()
