@@ -139,4 +139,15 @@ test("a motion that leaves its rest is not asked for more than the rounding of M
     for i = 0, 5 do runs(rig, { M = { a = M }, t_start = 600 * i, t_end = 600 * i + 600 }) end
 end)
 
+test("a freewheel without friction lets go where its torque passes 0 exactly", function()
+    for i = 1, 6 do
+        local run = runs({ bodies = { a = { I = 0.43, k = 1.8 }, b = { I = 0.97, k = i % 2, friction = friction.freewheel {} } }, links = { l = { "a", "b", k = 2 } } },
+            { theta0 = { a = -i / 4 }, t_end = 20, dt = 1 })
+        closes(run)
+        -- b is pushed as soon as a, which swings by itself until then, passes 0
+        local slip = of_kind(run, "slip")[1]
+        near(slip.t, math.pi / 2 / math.sqrt(3.8 / 0.43), 1e-12)
+    end
+end)
+
 finish()
