@@ -150,4 +150,12 @@ test("a freewheel without friction lets go where its torque passes 0 exactly", f
     end
 end)
 
+test("a run may begin where the normal load jumps", function()
+    local jumps = function(t) return math.sin(1.6 * t) > 0 and 1 or 0.7 end
+    local rig = { bodies = { a = { I = 2.8, k = 3.8 }, b = { I = 0.5, C = 0.4, Rd = 0.28, Re = 0.32, normal = jumps } }, links = { l = { "a", "b", k = 0.8 } } }
+    for _, M in ipairs { excitation.triangle { amplitude = 0.7, period = 1.59 }, excitation.harmonic { amplitude = 0.7, omega = 2 } } do
+        for n = -2, 4 do runs(rig, { M = { a = M }, t_start = n * math.pi / 1.6, t_end = n * math.pi / 1.6 + 20 }) end
+    end
+end)
+
 finish()
