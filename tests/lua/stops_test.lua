@@ -158,4 +158,14 @@ test("a run may begin where the normal load jumps", function()
     end
 end)
 
+test("a body comes to rest on a belt that stops while another body stands", function()
+    local rig = { bodies = { a = { I = 2.68, k = 1.53, friction = friction.stribeck { Rd = 0.23, Re = 0.32, speed = 0.07 } }, b = { I = 0.867, C = 0.05, Rd = 0.265, k = 1.62 } },
+        links = { l = { "a", "b", ratio = 1.289, k = 1.1667, Rd = 0.12 } } }
+    local steps = function(t) return 0.24 * math.floor(4 * ((0.05 * t) % 1)) end
+    local belt = function(t) return 0.21244 * math.floor(4 * ((0.145121 * t) % 1)) end
+    for i = 1, 30 do
+        runs(rig, { M = { a = excitation.sawtooth { amplitude = 0.48, period = 19.97 }, b = steps }, belt = { b = belt }, t_start = 20 * i, t_end = 20 * i + 200 })
+    end
+end)
+
 finish()
