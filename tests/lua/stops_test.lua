@@ -168,4 +168,13 @@ test("a body comes to rest on a belt that stops while another body stands", func
     end
 end)
 
+test("sliders beside dry friction slip only where their contact slips", function()
+    local laws = { friction.jenkins { stiffness = 16, Rd = 0.137 }, friction.jenkins { stiffness = 11.2, Rd = 0.082 }, friction.coulomb { Rd = 0.11 } }
+    for i = 1, 12 do
+        local run = runs({ I = 0.67, k = 4.54, C = 0.037, friction = laws }, { t_end = 1200, dt = 10,
+            M = function(t) return 0.67 * math.sin((1.6 + 0.01 * i) * t) + 0.21 * math.sin(2.64 * t + 3.577) end })
+        assert(run:energy().error:abs():max() < 1e-11)
+    end
+end)
+
 finish()
