@@ -177,4 +177,20 @@ test("sliders beside dry friction slip only where their contact slips", function
     end
 end)
 
+test("the slope of a belt is not asked for more digits than it has far from t = 0", function()
+    local normal = function(t) return math.sin(1.021 * t) > 0 and 1 or 0.3 end
+    local belt = function(t) return 0.314194 * math.sin(1.38117 * t) + 0.0619454 * math.sin(2.76233 * t + 4.435) end
+    closes(runs({ I = 0.33700739463091, k = 1.5781273779083, C = 0.03783044200749, Rd = 0.1051028529772, normal = normal },
+        { M = excitation.square { amplitude = 0.69963788448255482, period = 16.540315653111087 }, belt = belt, t_end = 4962, dt = 10 }))
+end)
+
+test("a joint with weights leaves a wall once", function()
+    for i = 0, 4 do
+        local link = { "a", "b", ratio = 1.7268808258001 + i / 50, k = 4.5643744510066, C = 0.0835, Rd = 0.99, walls = { upper = 1.1079021784381, restitution = 0.3 } }
+        local bodies = { a = { I = 2.1135645616871, C = 0.013126, Rd = 0.76648721298613, k = 0.62057655107059 }, b = { I = 0.30676646867662, C = 0.118, k = 4.3941484262325 } }
+        runs({ bodies = bodies, links = { l = link } }, { theta0 = { a = -0.32872787024971 }, t_end = 100, integrator = integrator.dopri5 { tolerance = 1e-9 },
+            M = { a = function(t) return 1.87021 * (t % 16.6863 < 7.96711 and t % 16.6863 or 0) end } })
+    end
+end)
+
 finish()
