@@ -75,7 +75,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
                         const SystemHandle& system) {
     const auto* integrator = options.object<motion::Integrator>("integrator");
     source::Task task{.system = system,
-                      .drive = asked_drive(L, options, *system, asked.t_start),
+                      .drive = asked_drive(L, options, *system),
                       .window = {.start = asked.t_start},
                       .rows = motion::Grid::at(asked.times),
                       .integrator = {}};

@@ -24,7 +24,7 @@ enum class Names { bodies, links, both };
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::System& system,
                     Names which, const std::function<void(std::size_t)>& f);
 /// The drive given by a call, with its start; by default from rest at 0.
-model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system, double start = 0);
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system);
 /// Sets the form in which users' functions receive theta, velocity and z.
 void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive);
 

@@ -50,22 +50,20 @@ void check_rigid_start(const lua::Options& options, const model::System& system,
                                           joint.name, system.angle_in_words(joint), given, speed));
 }
 
-void check_one_way(const lua::Options& options, const model::System& system, std::size_t j, const model::Drive& drive,
-                   double start) {
-    const model::Joint& joint = system.joints[j];
-    const double belt = drive.belts[j].components().empty() ? 0 : drive.belts[j].value_after(start);
-    double size = std::fabs(belt);
-    for (const auto& [body, by] : joint.of) size += std::fabs(by * drive.velocity0[body]);
-    const double slip = joint.sum(drive.velocity0) - belt;
+void check_one_way(const lua::Options& options, const model::System& system, const model::Joint& joint,
+                   const std::vector<double>& velocities) {
+    double size = 0;
+    for (const auto& [body, by] : joint.of) size += std::fabs(by * velocities[body]);
+    const double slip = joint.sum(velocities);
     constexpr double rounded = 1e-14;
-    if (!(slip < -rounded * size)) return;  // a function's value is unknown until the run begins
+    if (!(slip < -rounded * size)) return;
     options.fail("velocity0", fmt::format("velocity0: the freewheel{} turns forward only, but begins with {:.6g}",
                                           system.named ? " " + joint.name : "", slip));
 }
 
 }  // namespace
 
-model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system, double start) {
+model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system) {
     model::Drive drive = model::Drive::at_rest(system.bodies.size(), system.joints.size());
     const auto named = [&](const char* option, std::size_t joint) {
         return fmt::format("{}: {}", options.call(), part_of_option(system, option, joint));
@@ -100,12 +98,13 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
     }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         const model::Joint& joint = system.joints[j];
-        // A body with prescribed motion moves linked bodies from the start.
+        // A body with prescribed motion moves linked bodies from the start, and so does a belt on a freewheel.
         const bool free = std::none_of(joint.of.begin(), joint.of.end(), [&](const model::Weight& weight) {
             return system.bodies[weight.body].moved.has_value();
         });
         if (joint.rigid && free) check_rigid_start(options, system, joint, drive.velocity0);
-        if (joint.friction.law.is_one_way() && free) check_one_way(options, system, j, drive, start);
+        const bool one_way = joint.friction.law.is_one_way() && drive.belts[j].components().empty();
+        if (one_way && free) check_one_way(options, system, joint, drive.velocity0);
         if (!joint.walls) continue;
         const double angle = joint.sum(drive.theta0);
         if (auto wrong = joint.walls->crossed_by(angle)) {

@@ -1101,7 +1101,7 @@ private:
                                  constant(now.function, i.c()));
                 return true;
             case gettable:
-                way[a] = element(way[b], way[now.c]);
+                field(way, a, b, way[now.c]);
                 return true;
             case geti:
                 way[a] = element(way[b], constant_whole(i.c()));
@@ -1257,6 +1257,8 @@ private:
             way[a] = element(way[b], name);
             return;
         }
+        if (name.kind != Known::Kind::object)
+            throw Obstacle{"it reads a state or a body by something else than a name"};
         push_kept(name.object);
         const char* text = lua_tostring(L_, -1);
         const int table = way[b].object;  // 0: states, 1: theta, 2: velocity

@@ -562,8 +562,13 @@ public:
     [[nodiscard]] double part() const { return part_; }
 
 private:
-    static constexpr std::uint64_t prime = 0x100000001b3U;
-    void note(std::uint64_t what) { seen_ = (seen_ ^ what) * prime; }
+    /// Adds to a hash. The decisions of abs, -1 and 1, differ in the highest bit only, which a product leaves there: it
+    /// is also taken lower, or two of them would cancel.
+    static std::uint64_t mixed(std::uint64_t hash, std::uint64_t what) {
+        const std::uint64_t product = (hash ^ what) * 0x100000001b3U;
+        return product ^ product >> 29U;
+    }
+    void note(std::uint64_t what) { seen_ = mixed(seen_, what); }
 
     bool follow(std::size_t at, std::vector<Range>& r) {
         for (;;) {
@@ -598,7 +603,7 @@ private:
                 // The index of the step is mixed in, or equal pieces of both operands would cancel.
                 if (a.piece != 0 || b.piece != 0) {
                     for (const std::uint64_t piece : {at + 1, a.piece, b.piece}) {
-                        result.piece = (result.piece ^ piece) * prime;
+                        result.piece = mixed(result.piece, piece);
                     }
                 }
                 r[s.to] = result;
@@ -746,8 +751,12 @@ bool Formula::is_dubious(double t, double found) {
     constexpr double close = 1e-9, most_breaks = 50000, small = 1e-5, rounding = 1e-13;
     if (found == never || is_of_excitation(found)) return false;
     if (found - t < std::max(close * std::fabs(t), span_ / most_breaks)) return true;
-    const double jump = std::fabs(value(found, {}, {}) - value(std::nextafter(found, -never), {}, {}));
-    if (!(jump > 0)) return false;
+    const double before = std::nextafter(found, -never);
+    const auto change = [&](double from, double to) { return std::fabs(value(to, {}, {}) - value(from, {}, {})); };
+    const double jump = change(before, found);
+    // At a steep kink the value also changes between two doubles, as it does beside it.
+    const double few = 8 * (found - before);
+    if (!(jump > change(before - few, before) + change(found, found + few))) return false;
     constexpr int places = 50;
     for (int n = 0; n < places && !knows_greatest_; ++n) {
         const double there = std::fabs(value(found + span_ * n / places, {}, {}));

@@ -72,10 +72,13 @@ test("a belt or a moved body takes along what a freewheel keeps from falling beh
         closes(run)
     end
     local ramp = excitation.ramp { slope = 1 }
-    ends_at(2.5, 3, { belt = ramp, velocity0 = 2 })
-    ends_at(2.5, 3, { belt = function(t) return t end })
+    for _, belt in ipairs { ramp, function(t) return t end } do
+        for _, v in ipairs { 2, 1, 0, -1 } do ends_at(2.5, 3, { belt = belt, velocity0 = v }) end
+    end
+    for _, belt in ipairs { 3, excitation.constant(3), function() return 3 end } do ends_at(3, 3, { belt = belt }) end
     ends_at(-0.6, -0.7, { belt = -1, velocity0 = -0.5 })
-    raises(function() block:simulate { belt = ramp, t_start = 2, t_end = 3 } end, "the freewheel turns forward only, but begins with -2")
+    ends_at(-1, -1, { belt = -1, velocity0 = -1.5 })
+    raises(function() block:simulate { velocity0 = -0.5, t_end = 1 } end, "the freewheel turns forward only, but begins with -0.5")
     for _, v in ipairs { 2, -2 } do
         local rig = system { bodies = { motor = { velocity = function() return v end }, load = { I = 1 } },
             links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }

@@ -215,6 +215,37 @@ test("functions of several bodies, of the speed, and rates of states are read wi
     assert(#x.events > 3 and #one.events > 3)
 end)
 
+test("a body or a state may be named by a constant, a variable, a field or an argument", function()
+    local name, config, keys = "a", { body = "a" }, { "a" }
+    local function angle(theta, key) return theta[key] end
+    local ways = {
+        function(t, theta) return theta.a > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[name] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[config.body] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return theta[keys[1]] > 0.2 and -1 or 0.5 end,
+        function(t, theta) local key = "a" return theta[key] > 0.2 and -1 or 0.5 end,
+        function(t, theta) return angle(theta, name) > 0.2 and -1 or 0.5 end,
+    }
+    local rig = pair({ I = 1, k = 1 }, { I = 1, k = 2 }, { k = 1 })
+    local first
+    for _, M in ipairs(ways) do
+        local run = rig:simulate { M = { a = M }, t_end = 10, dt = 0.5 }
+        equal(run.gap, nil)
+        first = first or run
+        equal(run.a.theta, first.a.theta)
+    end
+    -- A state whose rate and name come from variables switches M where the constant name does.
+    local function switches(of)
+        local run = system { I = 1, k = 1 }:simulate { M = function(t, theta, v, z) return of(z) > 0.3 and 1 or 0 end, t_end = 10,
+            states = { a = { start = 0, rate = function() return 0.1 end } } }
+        equal(run.gap, nil)
+        return run.theta
+    end
+    equal(switches(function(z) return z[name] end), switches(function(z) return z.a end))
+    local ok, message = pcall(rig.simulate, rig, { M = { a = function(t, theta) return theta[1] end }, t_end = 1 })
+    assert(not ok and message:find "there is no body '1'", message)
+end)
+
 local function before(x)
     local n = string.unpack("i8", string.pack("d", x))
     return x > 0 and string.unpack("d", string.pack("i8", n - 1)) or x - 5e-324
@@ -369,6 +400,47 @@ test("kinks of abs, max and min are breaks", function()
     list = breaks(function(t) return math.abs(math.sin(t)) end, 0.1, 10)
     equal(#list, 3)
     near(list[3], 3 * math.pi, 1e-14)
+    -- A kink stays one on its way through variables, max and min, and beside another that turns back at the same time.
+    local max, min, abs = math.max, math.min, math.abs
+    for i, f in ipairs {
+        function(t) return max(0, 1 - abs(t - 3)) end,
+        function(t) return 3 + 0.5 * max(0, min(5, 1 - abs(t - 3))) end,
+        function(t) local x = 1 - abs(t - 3) return x > 0 and x or 0 end,
+        function(t) local x = 1 - abs(t - 3) x = x < 0 and 0 or x return x end,
+        function(t) if t < 2 or t > 4 then return 0 end return abs(t - 3) + 2 * abs(3 - t) end,
+        function(t) if t < 2 or t > 4 then return 0 end local x = abs(t - 3) return x * x * x + x end,
+    } do
+        equal(table.concat(breaks(f, 0, 10), " "), "2.0 3.0 4.0", i)
+    end
+end)
+
+test("steep kinks of a train of narrow pulses are breaks in each period, whatever is added", function()
+    for _, w in ipairs { 1e-6, 1e-5, 1e-4, 1.14981e-3, 1e-2, 0.1 } do
+        for _, c in ipairs { 0, 0.5, -3, 20 } do
+            for _, A in ipairs { 0.1, 1, 1 / w } do
+                local triangle = function(t)
+                    return c + A * math.max(0, 1 - math.abs((t - 0.487 - 2.7 * math.floor((t - 0.487) / 2.7 + 0.5)) / w))
+                end
+                local window = function(t)
+                    local x = ((t - 0.487 + 1.35) % 2.7 - 1.35) / w
+                    return c + A * (math.abs(x) < 1 and 1 - x * x or 0)
+                end
+                for _, f in ipairs { triangle, window } do
+                    local what = ("w %g, c %g, A %g"):format(w, c, A)
+                    local list, pulses = breaks(f, 0, 108), 0
+                    for _, b in ipairs(list) do
+                        if math.abs((b - 0.487 + 1.35) % 2.7 - 1.35 + w) < 1e-9 then pulses = pulses + 1 end
+                    end
+                    equal(pulses, 40, what)
+                    local run = system { I = 1, k = 0 }:simulate { M = f, t_end = 108, dt = 108 }
+                    equal(run.gap, nil)
+                    local area = 40 * A * w * (f == triangle and 1 or 4 / 3)
+                    local rounding = 1e-12 * (108 * math.abs(c) + area) + 2e-14 * area / w
+                    assert(math.abs(run.velocity[2] - 108 * c - area) < rounding, what)
+                end
+            end
+        end
+    end
 end)
 
 test("conditions of theta are not breaks, those of t in the same function are", function()

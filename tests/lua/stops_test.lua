@@ -106,4 +106,73 @@ test("the energy stored by a pressed stop is the same at the end as in the last 
     near(e.finish.kinetic, e.kinetic[#run], 1e-13)
 end)
 
+-- Long runs in which a contact stands at its limit to rounding, at times: each ended in "switched endlessly".
+local function runs(system_of, o)
+    local run = system(system_of):simulate(o)
+    assert(run.status ~= "failed", run.outcome)
+    return run
+end
+
+test("a motion that leaves its rest is not asked for more than the rounding of M", function()
+    local table_of = friction.table { speed = { 0, 0.3, 1.2 }, torque = { 0.4527, 0.3522, 0.5416 } }
+    local rig = { bodies = { a = { I = 1.48, C = 0.08, k = 0.407, friction = table_of }, b = { I = 0.931, k = 1.393 } },
+        links = { l = { "a", "b", ratio = 2.229, Rd = 0.255, k = 0.893, normal = function(t) return math.max(0, 1 + 1.486 * math.sin(1.004 * t)) end } } }
+    local M = function(t) return math.max(-0.559, math.min(0.359, 1.118 * math.sin(1.4356 * t + 4.306))) end
+    for i = 0, 5 do runs(rig, { M = { a = M }, t_start = 600 * i, t_end = 600 * i + 600 }) end
+end)
+
+test("a freewheel without friction lets go where its torque passes 0 exactly", function()
+    for i = 1, 6 do
+        local run = runs({ bodies = { a = { I = 0.43, k = 1.8 }, b = { I = 0.97, k = i % 2, friction = friction.freewheel {} } }, links = { l = { "a", "b", k = 2 } } },
+            { theta0 = { a = -i / 4 }, t_end = 20, dt = 1 })
+        closes(run)
+        -- b is pushed as soon as a, which swings by itself until then, passes 0
+        local slip = of_kind(run, "slip")[1]
+        near(slip.t, math.pi / 2 / math.sqrt(3.8 / 0.43), 1e-12)
+    end
+end)
+
+test("a run may begin where the normal load jumps", function()
+    local jumps = function(t) return math.sin(1.6 * t) > 0 and 1 or 0.7 end
+    local rig = { bodies = { a = { I = 2.8, k = 3.8 }, b = { I = 0.5, C = 0.4, Rd = 0.28, Re = 0.32, normal = jumps } }, links = { l = { "a", "b", k = 0.8 } } }
+    for _, M in ipairs { excitation.triangle { amplitude = 0.7, period = 1.59 }, excitation.harmonic { amplitude = 0.7, omega = 2 } } do
+        for n = -2, 4 do runs(rig, { M = { a = M }, t_start = n * math.pi / 1.6, t_end = n * math.pi / 1.6 + 20 }) end
+    end
+end)
+
+test("a body comes to rest on a belt that stops while another body stands", function()
+    local rig = { bodies = { a = { I = 2.68, k = 1.53, friction = friction.stribeck { Rd = 0.23, Re = 0.32, speed = 0.07 } }, b = { I = 0.867, C = 0.05, Rd = 0.265, k = 1.62 } },
+        links = { l = { "a", "b", ratio = 1.289, k = 1.1667, Rd = 0.12 } } }
+    local steps = function(t) return 0.24 * math.floor(4 * ((0.05 * t) % 1)) end
+    local belt = function(t) return 0.21244 * math.floor(4 * ((0.145121 * t) % 1)) end
+    for i = 1, 30 do
+        runs(rig, { M = { a = excitation.sawtooth { amplitude = 0.48, period = 19.97 }, b = steps }, belt = { b = belt }, t_start = 20 * i, t_end = 20 * i + 200 })
+    end
+end)
+
+test("sliders beside dry friction slip only where their contact slips", function()
+    local laws = { friction.jenkins { stiffness = 16, Rd = 0.137 }, friction.jenkins { stiffness = 11.2, Rd = 0.082 }, friction.coulomb { Rd = 0.11 } }
+    for i = 1, 12 do
+        local run = runs({ I = 0.67, k = 4.54, C = 0.037, friction = laws }, { t_end = 1200, dt = 10,
+            M = function(t) return 0.67 * math.sin((1.6 + 0.01 * i) * t) + 0.21 * math.sin(2.64 * t + 3.577) end })
+        assert(run:energy().error:abs():max() < 1e-11)
+    end
+end)
+
+test("the slope of a belt is not asked for more digits than it has far from t = 0", function()
+    local normal = function(t) return math.sin(1.021 * t) > 0 and 1 or 0.3 end
+    local belt = function(t) return 0.314194 * math.sin(1.38117 * t) + 0.0619454 * math.sin(2.76233 * t + 4.435) end
+    closes(runs({ I = 0.33700739463091, k = 1.5781273779083, C = 0.03783044200749, Rd = 0.1051028529772, normal = normal },
+        { M = excitation.square { amplitude = 0.69963788448255482, period = 16.540315653111087 }, belt = belt, t_end = 4962, dt = 10 }))
+end)
+
+test("a joint with weights leaves a wall once", function()
+    for i = 0, 4 do
+        local link = { "a", "b", ratio = 1.7268808258001 + i / 50, k = 4.5643744510066, C = 0.0835, Rd = 0.99, walls = { upper = 1.1079021784381, restitution = 0.3 } }
+        local bodies = { a = { I = 2.1135645616871, C = 0.013126, Rd = 0.76648721298613, k = 0.62057655107059 }, b = { I = 0.30676646867662, C = 0.118, k = 4.3941484262325 } }
+        runs({ bodies = bodies, links = { l = link } }, { theta0 = { a = -0.32872787024971 }, t_end = 100, integrator = integrator.dopri5 { tolerance = 1e-9 },
+            M = { a = function(t) return 1.87021 * (t % 16.6863 < 7.96711 and t % 16.6863 or 0) end } })
+    end
+end)
+
 finish()

@@ -58,9 +58,10 @@ void Guards::see(std::optional<double> x, int side) {
     if (x && *x < ending_.x) ending_ = {*x, by_, which_, side};
 }
 
-void Guards::watch(const Series& left, double floor, bool zero, int side) {
+void Guards::watch(const Series& left, double floor, bool zero, int side, double slope_floor) {
     cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
     curve.raise_floor(floor);
+    curve.raise_slope_floor(slope_floor);
     see(cheb::first_below(curve, -1, zero), side);
 }
 
@@ -83,6 +84,14 @@ double Guards::least_inertia(std::size_t joint) const {
         inertia = std::min(inertia, mechanics_.system().bodies[body].inertia / (by * by));
     }
     return inertia;
+}
+
+/// Returns the possible error of a joint's velocity. A motion that begins at slip 0, or at the limit of a slider, may
+/// be wrong by more than it moves at first.
+double Guards::uncertain(std::size_t joint) const {
+    double sum = 0;
+    for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * of_.solver.uncertain(body, segment_);
+    return sum;
 }
 
 /// Returns whether all joints that leave slip 0 were released by less than the rounding of their torques, and so do not
@@ -147,7 +156,7 @@ void Guards::watch_slip(std::size_t joint) {
     auto zero = cheb::first_below(curve, -1, how.leaving, always);
     if (how.leaving && zero && *zero <= -1 &&
         !mechanics_.has_belt(joint)) {  // the error of the motion may exceed its rounding
-        curve.raise_floor(std::fabs(own.of.front().by) * of_.solver.uncertain(own.first(), segment_));
+        curve.raise_floor(uncertain(joint));
         zero = cheb::first_below(curve, -1, true, always);
     }
     if (how.leaving && none_leaves()) zero = -1;
@@ -283,7 +292,9 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
             leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
         Series left = cheb::fit(change);
         if (!leaving) left[0] += begin;
-        watch(left, 64 * rounding * far, leaving, wall);
+        // The sum of the bodies' velocities has a rounding although their joint leaves the wall from slip 0.
+        const double rounded = leaving ? segment_.h * 16 * rounding * fastest(joint) : 0;
+        watch(left, 64 * rounding * far + rounded, leaving, wall, rounded);
     }
 }
 
@@ -311,21 +322,28 @@ void Guards::watch_stop(std::size_t joint) {
     see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), pressed != 0 ? 0 : deep);
 }
 
-/// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses.
+/// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses. The direction of a
+/// contact with dry friction is that of its mode, which reverses by watch_slip() only.
 void Guards::watch_slider(std::size_t slider) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
     if (frame_.keeps(own.joint)) return;  // the slip of a contact held by other joints is only rounding
+    const Motion slides_to = now_.mode.sliders[slider];
+    const bool known = now_.rubs(own.joint);
+    const Motion moves_to = known ? now_.mode.friction[own.joint].way : Motion::stuck;
     Half half = 1;
-    if (now_.mode.sliders[slider] != Motion::stuck) {
-        half = static_cast<int>(now_.mode.sliders[slider]);
-        see(slip_leaves(own.joint, half), static_cast<int>(Motion::stuck));
+    if (slides_to != Motion::stuck) {
+        half = static_cast<int>(slides_to);
+        if (!known) see(slip_leaves(own.joint, half), static_cast<int>(Motion::stuck));
+        if (known && moves_to != Motion::stuck && moves_to != slides_to) see(-1, static_cast<int>(Motion::stuck));
         return;
     }
+    const double rounded = own.stiffness * 2 * segment_.h * uncertain(own.joint);
     for (const Motion way : {Motion::forward, Motion::backward}) {
+        if (known && way != moves_to) continue;
         const auto left = [&](const Moment& at) {
             return own.limit - model::sign_of(way) * own.stiffness * at.y[own.bend];
         };
-        see(leaves(segment_.at_nodes(left, point_), left, half), static_cast<int>(way));
+        see(leaves(segment_.at_nodes(left, point_), left, half, rounded), static_cast<int>(way));
     }
 }
 
@@ -355,7 +373,7 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
     const auto slip = [&](const Moment& at) {
         return mechanics_.velocity(joint, at.y) - mechanics_.belt(joint, at.t, at.side);
     };
-    return leaves(mechanics_.slips(joint, segment_.y, segment_.belts[joint]), slip, half);
+    return leaves(mechanics_.slips(joint, segment_.y, segment_.belts[joint]), slip, half, uncertain(joint));
 }
 
 /// Ends the stretch at slip 0, where the rate of bristles has a corner.

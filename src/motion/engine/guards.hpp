@@ -59,8 +59,8 @@ private:
     /// Ends the stretch at x by what is being watched, if nothing ends it earlier.
     void see(std::optional<double> x, int side = 0);
     /// Ends the stretch at the first zero of a curve that is positive, or starts from a known `zero`. `floor` is its
-    /// rounding.
-    void watch(const Series& left, double floor, bool zero, int side);
+    /// rounding, `slope_floor` that of its slope.
+    void watch(const Series& left, double floor, bool zero, int side, double slope_floor = 0);
     /// Returns the point at which a function of the moment, given its values at the nodes, leaves its half.
     template <class Value>
     std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
@@ -70,6 +70,7 @@ private:
     [[nodiscard]] double soon() const;
     [[nodiscard]] double fastest(std::size_t joint) const;
     [[nodiscard]] double least_inertia(std::size_t joint) const;
+    [[nodiscard]] double uncertain(std::size_t joint) const;
     [[nodiscard]] bool none_leaves() const;
     [[nodiscard]] bool slides(std::size_t joint) const;
     [[nodiscard]] bool may_creep(std::size_t joint) const;

@@ -66,7 +66,8 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
                             : i < n ? most_noise_of_motion * ever
                                     : most_noise_of_rate * tolerance * ever;
         double& noise = floor_.noise[i];
-        if (!(tail > tolerance * size)) continue;
+        // A motion that leaves its rest is judged by the rounding of its torques.
+        if (!(tail > std::min(tolerance, few_roundings * rounding) * size)) continue;
         // The motion may be negligible against the numbers that its functions calculate with.
         const auto is_rounding = [&] {
             if (known.empty()) known = proofs.roundings(s, mode);
@@ -102,12 +103,12 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
             }
             continue;
         }
+        if (noise > 0 && 2 * tail <= noise) continue;
+        if (!stalls) continue;  // otherwise a stretch that is only too long would raise the noise again and again
         if (noise > 0 && tail <= varies * noise) {
-            any = any || 2 * tail > noise;
-            noise = std::max(noise, 2 * tail);
+            noise = 2 * tail, any = true;
             continue;
         }
-        if (!stalls) continue;
         // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
         // like the greatest value so far.
         if (tail <= rounding * ever || is_rounding()) {

@@ -84,7 +84,10 @@ Engine::Engine(const Request& problem, Run& result)
 // ---- the loop
 
 void Engine::begin() {
-    now_.after_break = mechanics_.next_break(std::nextafter(now_.t.hi, -model::never)) == now_.t.hi;
+    // The search for the breaks of a formula takes a break within rounding of its start for past.
+    constexpr double few = 16, smallest_time = 1e-290;
+    const double earlier = now_.t.hi - std::max(few * rounding * std::fabs(now_.t.hi), smallest_time);
+    now_.after_break = mechanics_.next_break(earlier) <= now_.t.hi;
     find_belt_slopes({});
     std::vector<std::string> names;
     if (problem_.system.named) {
