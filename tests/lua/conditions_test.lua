@@ -140,4 +140,21 @@ test("a narrow window that a square decides is passed whole in M, springs, rates
     end
 end)
 
+test("a condition on the motion is located and slid along where a condition on time opens it", function()
+    local sys = system { I = 1, k = 1.6458, C = 0.1, Rd = 0.05, Re = 0.1 }
+    local function at_end(M)
+        local run = sys:simulate { M = M, theta0 = 1.055, t_end = 20, times = {} }
+        assert(run.status ~= "failed" and not run.gap, run.outcome)
+        return run:at(20)
+    end
+    local theta = at_end(function(t, theta, velocity) return velocity < 0.3 and math.sin(2 * t) > 0 and 0.8 or 0 end)
+    near(at_end(function(t, theta, velocity) return math.sin(2 * t) > 0 and velocity < 0.3 and 0.8 or 0 end), theta, 1e-12)
+    near(at_end(function(t, theta, velocity)
+        if t % math.pi < math.pi / 2 then
+            if velocity < 0.3 then return 0.8 end
+        end
+        return 0
+    end), theta, 1e-9)
+end)
+
 finish()
