@@ -492,6 +492,27 @@ double rate_on(Op op, double da, double db, double decision) {
 
 }  // namespace
 
+namespace {
+
+/// The rate of the first margin of a step; that of the second, if there is one, is its opposite.
+double first_margin_rate(Op op, double a, double b, double da, double db, double decision) {
+    switch (op) {
+        case Op::less:
+        case Op::less_equal:
+        case Op::abs:
+            return margins_of(op, da, db, decision).first;  // linear
+        case Op::floor:
+        case Op::ceil:
+            return da;
+        case Op::equal:
+            return failure;
+        default:
+            return rate_of(Op::divide, a, b, da, db);
+    }
+}
+
+}  // namespace
+
 double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, double t, const State& state,
                             std::span<const double> states, const State& rate, std::span<const double> rates) {
     start(t, state, states);
@@ -511,10 +532,8 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
             return nullptr;
         }
         const auto conditions = static_cast<std::size_t>(conditions_of(s->op, decision));
-        const bool plain =
-            s->op == Op::less || s->op == Op::less_equal || s->op == Op::abs;  // their margins are linear
-        if (plain && passed <= condition && condition < passed + conditions) {
-            found = margins_of(s->op, da, db, decision).first;
+        if (passed <= condition && condition < passed + conditions) {
+            found = (condition > passed ? -1 : 1) * first_margin_rate(s->op, a, b, da, db, decision);
         }
         passed += conditions;
         if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);

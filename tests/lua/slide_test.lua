@@ -600,4 +600,29 @@ test("a load and the rate of a state slide at once, and follow an independent pr
     near(run.states.z[#run], -0.010953476, 3e-9)
 end)
 
+test("the motion slides and rests on the steps of a staircase as on those of comparisons", function()
+    local q = 0.3
+    local function compared(x)
+        return x >= 2.5 * q and 3 or x >= 1.5 * q and 2 or x >= 0.5 * q and 1 or x >= -0.5 * q and 0 or x >= -1.5 * q and -1
+            or x >= -2.5 * q and -2 or x >= -3.5 * q and -3 or x >= -4.5 * q and -4 or -5
+    end
+    local rows = {
+        floor = function(t, theta, velocity) return -0.4 * math.floor(velocity / q + 0.5) end,
+        divided = function(t, theta, velocity) return -0.4 * ((velocity + 0.5 * q) // q) end,
+        ceil = function(t, theta, velocity) return -0.4 * math.ceil(velocity / q - 0.5) end,
+        remainder = function(t, theta, velocity) return -0.4 / q * (velocity + 0.5 * q - (velocity + 0.5 * q) % q) end,
+    }
+    for _, Rd in ipairs { 0, 0.05, 0.2 } do
+        local sys = system { I = 1, k = 1.6, C = 0.3, Rd = Rd }
+        local function at_end(M) return sys:simulate { M = M, theta0 = 0.9, t_end = 20, times = {} }:at(20) end
+        local expected = at_end(function(t, theta, velocity) return -0.4 * compared(velocity) end)
+        for name, M in pairs(rows) do
+            local theta = at_end(M)
+            assert(math.abs(theta - expected) < 1e-11, ("%s, Rd %g: %.15g, not %.15g"):format(name, Rd, theta, expected))
+        end
+        near(at_end(function(t, theta) return -0.4 * math.floor(theta / q + 0.5) end),
+            at_end(function(t, theta) return -0.4 * compared(theta) end), 1e-11)
+    end
+end)
+
 finish()

@@ -15,10 +15,11 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::uint64_t arg
         });
     };
     decide_at(own, piece_), decide_at(beyond, made->beyond);
+    // Conditions after the first that differs may depend on it.
     const auto& conditions = piece_.conditions;
     while (made->condition < conditions.size()) {
         const auto& [step, further, of] = conditions[made->condition];
-        if (made->beyond.decisions[step] != piece_.decisions[step] && (law_ || (of & ~arguments) == 0)) break;
+        if (made->beyond.decisions[step] == further && (law_ || (of & ~arguments) == 0)) break;
         ++made->condition;
     }
     if (made->condition == conditions.size() || made->beyond.conditions.empty()) return false;
