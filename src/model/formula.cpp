@@ -212,10 +212,15 @@ Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool mo
       states_(states),
       state_count_(state_count),
       timeless_(timeless),
-      has_conditions_(!excitations_.empty() ||
-                      std::any_of(steps_.begin(), steps_.end(),
-                                  [](const Step& s) { return is_comparison(s.op) || is_fold(s.op); })),
-      of_motion_(has_conditions_ && depends_on_motion([](Op op) { return is_comparison(op) || is_fold(op); })) {}
+      has_conditions_(!excitations_.empty() || std::any_of(steps_.begin(), steps_.end(), [](const Step& s) {
+          return is_comparison(s.op) || is_fold(s.op);
+      })) {
+    const auto decides = [](Op op) { return is_comparison(op) || is_fold(op); };
+    std::vector<std::uint64_t> time(registers_.size());
+    time[0] = 1;
+    of_motion_ = has_conditions_ && depends_on(sources(), decides);
+    of_time_ = !excitations_.empty() || (has_conditions_ && depends_on(std::move(time), decides));
+}
 
 void Formula::start(double t, const State& state, std::span<const double> states) {
     registers_[0] = t;
@@ -337,27 +342,28 @@ std::vector<std::uint64_t> Formula::sources() const {
     return of;
 }
 
-/// Returns whether a step with a `wanted` operation depends on theta, velocity or a state.
-bool Formula::depends_on_motion(bool (*wanted)(Op op)) const {
+/// Returns whether a step with a `wanted` operation depends on a register that is not 0 in `of`.
+bool Formula::depends_on(std::vector<std::uint64_t> of, bool (*wanted)(Op op)) const {
     using Sources = std::vector<std::uint64_t>;
     std::map<std::size_t, Sources> ways;  // the sources with which a step is reached
-    const auto lead = [&ways](std::size_t to, const Sources& of) {
+    const auto lead = [&](std::size_t to) {
         Sources& there = ways.try_emplace(to, of).first->second;
         for (std::size_t i = 0; i < of.size(); ++i) there[i] |= of[i];
     };
-    lead(0, sources());
+    lead(0);
     while (!ways.empty()) {
-        auto [at, of] = std::move(*ways.begin());
+        std::size_t at = 0;
+        std::tie(at, of) = std::move(*ways.begin());
         ways.erase(ways.begin());
         const Step& s = steps_[at];
         const std::uint64_t both = of[s.a] | of[s.b];
         if (wanted(s.op) && both != 0) return true;
-        if (is_comparison(s.op)) lead(s.no, of);
+        if (is_comparison(s.op)) lead(s.no);
         if (is_comparison(s.op) || s.op == Op::jump) {
-            lead(s.yes, of);
+            lead(s.yes);
         } else if (s.op < Op::give) {
             of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
-            lead(at + 1, of);
+            lead(at + 1);
         }
     }
     return false;
@@ -750,7 +756,7 @@ double Formula::next_break(double t) {
 
 double Formula::next_break(double t, Breaks which) {
     constexpr double end_of_time = 1e300;
-    if (!has_conditions_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
+    if (!of_time_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
     const double found = search(t + 0.0, which);  // not -0
     // A long series of breaks with tiny jumps comes from rounding or truncated digits: it counts as roughness, not
     // as events.

@@ -159,7 +159,7 @@ public:
     bool has_conditions_of_motion() const { return of_motion_; }
     /// Returns whether an excitation is evaluated at a time that depends on theta, velocity or a state.
     bool moves_excitations() const {
-        return !excitations_.empty() && depends_on_motion([](Op op) { return op == Op::native; });
+        return !excitations_.empty() && depends_on(sources(), [](Op op) { return op == Op::native; });
     }
     /// Returns whether the search for break times exceeded its limit; next_break() then returns `never`.
     bool gave_up() const { return gave_up_; }
@@ -171,7 +171,7 @@ private:
     double next_break(double t, Breaks which);
     double search(double t, Breaks which);
     std::vector<std::uint64_t> sources() const;
-    bool depends_on_motion(bool (*wanted)(Op op)) const;
+    bool depends_on(std::vector<std::uint64_t> of, bool (*wanted)(Op op)) const;
     void start(double t, const State& state, std::span<const double> states);
     bool is_dubious(double t, double found);
     bool is_of_excitation(double found) const;
@@ -181,7 +181,7 @@ private:
     Excitations excitations_;
     bool motion_;
     std::size_t states_, state_count_;
-    bool timeless_, has_conditions_, of_motion_, gave_up_ = false;
+    bool timeless_, has_conditions_, of_motion_ = false, of_time_ = false, gave_up_ = false;
     std::array<std::map<double, double>, 2> known_;  ///< from a time to the next break, for Breaks::own and Breaks::all
     int unfinished_ = 0;                             ///< searches that hit their limit without finding a break
     double span_ = 1, greatest_ = 0;                 ///< time span of interest; the greatest |value| at sample times

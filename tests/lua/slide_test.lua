@@ -610,6 +610,14 @@ test("the motion slides and rests on the steps of a staircase as on those of com
         floor = function(t, theta, velocity) return -0.4 * math.floor(velocity / q + 0.5) end,
         divided = function(t, theta, velocity) return -0.4 * ((velocity + 0.5 * q) // q) end,
         ceil = function(t, theta, velocity) return -0.4 * math.ceil(velocity / q - 0.5) end,
+        loop = function(t, theta, velocity)
+            local n = 0
+            for step = 1, 6 do
+                if velocity >= (step - 0.5) * q then n = n + 1 end
+                if velocity < (0.5 - step) * q then n = n - 1 end
+            end
+            return -0.4 * n
+        end,
         remainder = function(t, theta, velocity) return -0.4 / q * (velocity + 0.5 * q - (velocity + 0.5 * q) % q) end,
     }
     for _, Rd in ipairs { 0, 0.05, 0.2 } do
