@@ -405,17 +405,21 @@ private:
         }
     }
 
-    /// Describes motions along a surface on which M or the rate of a state jumps.
+    /// Describes motions along a surface on which M, a spring or the rate of a state jumps.
     void tell_slides() {
         using enum model::EventKind;
         std::size_t n = 0;
         double from = run_.t_start, all = 0;
         bool slides = false, any = false;
+        std::vector<std::string> may_jump{"M"};
+        const auto sprung = [](const model::Joint& joint) { return !joint.spring.none(); };
+        if (std::ranges::any_of(whole_.system.joints, sprung)) may_jump.emplace_back("a spring");
+        if (!whole_.drive.states.empty()) may_jump.emplace_back("the rate of a state");
         const auto add_slide = [&](double to, const std::string& why) {
             all += to - from, ++n;
             if (n > most_slides) return;
             say("From t = {} to {} it slid along a surface on which {} jumps and drives it back from both sides{}.",
-                at(from), at(to), whole_.drive.states.empty() ? "M" : "M or the rate of a state", why);
+                at(from), at(to), fmt::join(may_jump, " or "), why);
         };
         for (const model::Event& event : run_.events) {
             if (event.kind == slide_begins) from = event.t, slides = true;

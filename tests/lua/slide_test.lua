@@ -318,6 +318,8 @@ test("explain() says when the mass slid along a surface, and why that ended", fu
     local story = told(system { I = 1, k = 0 }:simulate { M = function(t, _, v) return (v > 0 and -1 or 1) + 0.3 * t end, t_end = 8 })
     has(story, "From t = 0 to 3.3333 it slid along a surface on which M jumps")
     has(story, "then one side no longer did")
+    story = told(system { I = 1, k = 5, C = 8, spring = function(theta) return theta > 0 and 0.4 or -0.4 end }:simulate { M = 0.3, t_end = 8 })
+    has(story, "a surface on which M or a spring jumps and drives it back from both sides, until the run ended")
     story = told(system { I = 1, k = 1 }:simulate { M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 3.3, t_end = 20 })
     has(story, "until the run ended")
     story = told(system { I = 1, k = 1.3, Rd = 0.3 }:simulate { M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 3.3, t_end = 20 })
