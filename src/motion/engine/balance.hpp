@@ -48,7 +48,7 @@ public:
     bool on_stretch(const Segment& segment, double x, const Moment& at, const Mode& mode, const Frame& frame,
                     Balance& result, SampledLoads* sampled = nullptr);
 
-    /// Returns whether any load depends on the motion.
+    /// Returns whether any load depends on the motion, or a spring may jump.
     bool has_feedback() const { return has_feedback_; }
 
 private:

@@ -553,6 +553,11 @@ double Mechanics::spring_torque(std::size_t joint, const Moment& at) const {
     return held ? held->value(at) : system_.joints[joint].spring.torque(angle(joint, at.y));
 }
 
+double Mechanics::spring_torque(std::size_t joint, double angle) const {
+    const auto& held = contacts_[joint].spring;
+    return held ? held->value({}, angle) : system_.joints[joint].spring.torque(angle);
+}
+
 double Mechanics::joint_torque(std::size_t joint, const Moment& at, const Mode& mode, double belt) const {
     const Joint& own = system_.joints[joint];
     const double q = angle(joint, at.y), s = velocity(joint, at.y);
@@ -580,10 +585,7 @@ void Mechanics::native_torques(std::size_t joint, const Mode& mode, const std::v
         return;
     }
     if (!own.spring.none()) {
-        const auto& held = contacts_[joint].spring;
-        for (std::size_t j = first; j < end; ++j) {
-            out[j] += held ? held->value({}, angle[j]) : own.spring.torque(angle[j]);
-        }
+        for (std::size_t j = first; j < end; ++j) out[j] += spring_torque(joint, angle[j]);
     }
     if (const int side = mode.presses[joint]; side != 0) {
         for (std::size_t j = first; j < end; ++j) out[j] += own.stops->torque(side, angle[j], velocity[j]);
@@ -664,7 +666,8 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
         for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
         size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
         const auto by_steepness = [&](double part) {
-            return std::fabs(own.spring.torque(q + part * known) - own.spring.torque(q - part * known)) / (2 * part);
+            return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
+                   (2 * part);
         };
         // A jump does not count as steepness: over a wider interval it is far less steep.
         constexpr double ulps = 1024 * rounding, wider = 1e-4;

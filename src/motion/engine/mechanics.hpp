@@ -368,6 +368,8 @@ private:
 
     double bound_of_fastest(const Frame& frame) const;
     double spring_torque(std::size_t joint, const Moment& at) const;
+    /// The same on the present piece of a user's function, also where the joint slides along its jump.
+    double spring_torque(std::size_t joint, double angle) const;
     double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
     /// Visits each user function.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;

@@ -10,7 +10,7 @@ bool Piecewise::slide(const Moment& own, const Moment& beyond, std::uint64_t arg
     let_go();
     const auto decide_at = [&](const Moment& at, model::terms::Piece& piece) {
         constexpr std::uint64_t all = ~std::uint64_t{0};
-        called(at, law_ ? law_->slip(at) : 0, [&](double t, const model::State& state, std::span<const double> states) {
+        called(at, argument(at), [&](double t, const model::State& state, std::span<const double> states) {
             function_->decide(piece, t, state, states, all);
         });
     };

@@ -128,7 +128,7 @@ public:
         if (is_held() && stays && !crossed_) return;
         crossed_ = false;
         // A joint about to slip counts as moving already.
-        const double given = law_ ? law_->way * law_->slip(at) : 0;
+        const double given = argument(at);
         const double speed = law_ && !law_->of_angle ? std::max(given, std::numeric_limits<double>::min()) : given;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             function_->decide(piece_, t, state, states, again);
@@ -140,7 +140,7 @@ public:
     /// Computes margins that are positive while each condition keeps its decision.
     void margins(const Moment& at, std::vector<double>& out) const {
         if (slide_) return sliding_margins(at, out);
-        const double speed = law_ ? law_->way * law_->slip(at) : 0;
+        const double speed = argument(at);
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             function_->value_on(piece_, t, state, states, &out);
         });
@@ -175,10 +175,9 @@ public:
 
 private:
     double on(const model::terms::Piece& piece, const Moment& at, std::vector<double>* margins) const {
-        return called(at, law_ ? law_->way * law_->slip(at) : 0,
-                      [&](double t, const model::State& state, std::span<const double> states) {
-                          return function_->value_on(piece, t, state, states, margins);
-                      });
+        return called(at, argument(at), [&](double t, const model::State& state, std::span<const double> states) {
+            return function_->value_on(piece, t, state, states, margins);
+        });
     }
     double margin_rate(model::Formula& of, const Moment& at, std::span<const double> rates) const;
     double sliding(const Moment& at) const;
@@ -195,6 +194,9 @@ private:
         with_speed_.insert(with_speed_.end(), states.begin(), states.end());
         return call(time(at), asking_->state(at.y), std::span<const double>(with_speed_));
     }
+
+    /// The speed or angle that a law is asked with; 0 for other functions.
+    double argument(const Moment& at) const { return law_ ? law_->way * law_->slip(at) : 0; }
 
     const Asking* asking_;
     model::UserFunction* function_;
