@@ -228,4 +228,26 @@ test("impacts in a row that bounce end, also where only rounding is left of them
     end
 end)
 
+test("runs that begin at an elastic stop exactly, or to rounding, go on", function()
+    math.randomseed(3)
+    local function lot(a, b) return math.floor((a + (b - a) * math.random()) * 100) / 100 end
+    for _ = 1, 150 do
+        local lower, stiffness = -lot(0.1, 1), 10 ^ (5 * math.random())
+        local start, fast = lower + math.random(-1, 1) * 2 ^ -53, -10 ^ (-14 * math.random())
+        -- Pressed against a stop that damps, a mass comes to lie where the springs balance.
+        local k, M = lot(0.5, 3), -lot(0, 1)
+        local mass = system { I = 1, k = k, C = 1, walls = { lower = lower, stiffness = stiffness, damping = lot(1, 10) } }
+        local run = mass:simulate { theta0 = start, velocity0 = fast, M = M, t_end = 300, dt = 10 }
+        assert(run.status == "end" or run.status == "rest", run.outcome)
+        near(run.theta[#run], math.max(M / k, (M + stiffness * lower) / (k + stiffness)), 1e-10)
+        -- Two bodies with a stop between them keep the balance of energy.
+        local link = { "a", "b", walls = { lower = lower, stiffness = stiffness } }
+        local rig = system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = k } }, links = { stop = link } }
+        local q = lot(-1, 1)
+        run = rig:simulate { theta0 = { a = start + q, b = q }, velocity0 = { a = fast + 0.2, b = 0.2 }, M = { a = M }, t_end = 20 }
+        equal(run.status, "end")
+        closes(run)
+    end
+end)
+
 finish()

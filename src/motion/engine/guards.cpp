@@ -319,7 +319,7 @@ void Guards::watch_stop(std::size_t joint) {
     };
     Half half = pressed != 0 ? 1 : -1;
     const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
-    see(leaves(segment_.at_nodes(value, point_), value, half, pressed != 0 ? 0 : rounded), pressed != 0 ? 0 : deep);
+    see(leaves(segment_.at_nodes(value, point_), value, half, rounded), pressed != 0 ? 0 : deep);
 }
 
 /// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses. The direction of a

@@ -659,7 +659,8 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     if (!own.spring.none()) size += std::fabs(spring_torque(joint, at));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
-        if (deep >= 0) size += own.stops->stiffness * deep + own.stops->damping * std::fabs(v);
+        // The depth is a difference of angles and has their rounding.
+        if (deep >= 0) size += own.stops->stiffness * (std::fabs(q) + deep) + own.stops->damping * std::fabs(v);
     }
     if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
         double known = 0;
