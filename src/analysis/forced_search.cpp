@@ -27,6 +27,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
             note_failure(*search.failed(), seen);
             return {};
         }
+        facts_.residual = search.nearest_repeat();
         const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
         sizes.push_back(largest(seen, 0, half));
         if (half < seen.size()) {
@@ -147,6 +148,19 @@ std::optional<Closed> ClosedSearch::closes(double near) {
         return itself(seen_[last], static_cast<int>(m));
     }
     return {};
+}
+
+double ClosedSearch::nearest_repeat() const {
+    constexpr std::size_t in_a_row = 32;  // an irregular motion comes near to itself once, not for so long
+    double nearest = model::never;
+    for (std::size_t m = 1; m <= static_cast<std::size_t>(longest_) && m + in_a_row < seen_.size(); ++m) {
+        double farthest = 0;
+        for (std::size_t i = seen_.size() - in_a_row; i < seen_.size(); ++i) {
+            farthest = std::max(farthest, size_of_step(seen_[i].to - seen_[i - m].to));
+        }
+        nearest = std::min(nearest, farthest);
+    }
+    return nearest;
 }
 
 /// The motion with the smallest number of returns; slow decay can make a multiple look closer.

@@ -28,6 +28,8 @@ public:
     std::optional<Closed> follow(Return first, const std::vector<int>& counts);
 
     const std::vector<Return>& seen() const { return seen_; }
+    /// How nearly the last returns repeat earlier ones, in sizes of the motion; infinite if there are too few.
+    double nearest_repeat() const;
     std::optional<model::Outcome> failed() const { return failed_; }
 
 private:

@@ -255,7 +255,9 @@ public:
         if (others.empty()) tell_unique();
     }
     void count_others(std::size_t others) {
-        if (others > 0) say("From other starts {} was seen.", text::counted(others, "other motion"));
+        if (others > 0) {
+            say("From other starts {} {} seen.", text::counted(others, "other motion"), others == 1 ? "was" : "were");
+        }
         if (others == 0) tell_unique();
     }
 
@@ -329,9 +331,11 @@ private:
         if (timeless_) {
             say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
         } else {
-            say("No motion of up to 32 periods of M was found within {} periods: the motion is irregular, or it "
-                "settles very slowly.",
-                motion_.maps);
+            const bool settles = motion_.residual > 0 && motion_.residual < 1e-2;
+            say("No motion of up to 32 periods of M was found within {} periods: {}.", motion_.maps,
+                settles ? fmt::format("the motion still settles, and changes by {:.2g} of its amplitude in a period",
+                                      motion_.residual)
+                        : "the motion is irregular, or it settles very slowly");
         }
         if (!sampled) return;
         if (timeless_) {
