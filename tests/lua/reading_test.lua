@@ -381,6 +381,12 @@ test("breaks are the very times at which Lua's result changes", function()
         { function(t) return math.floor(t * 1e3) % 1000 < 500 and 5 or 0 end, 19, 19 },
         { function(t) return t % 1 + 0.5 > 2 and 5 or 0 end, 0, 0 },
         { function(t) return math.atan(t) > 1 and 2 or math.log(t + 1) > 2 and 3 or math.sqrt(t) < 1 and 4 or 5 end, 2 },
+        -- folds below zero, and by a negative number
+        { function(t) return math.fmod(t - 3, 2) < -1.5 and 2 or 3 end, 2 },
+        { function(t) return (t - 3) % -2 < -1.1 and 2 or 3 end, 10 },
+        { function(t) return (t - 3) // -0.7 end, 14 },
+        { function(t) return math.ceil(-t) end, 9 },
+        { function(t) return math.abs(math.abs(t - 5) - 3) > 1 and 2 or 3 end, 4 },
     }
     for i, case in ipairs(cases) do
         local f, count = case[1], case[2]
@@ -391,6 +397,15 @@ test("breaks are the very times at which Lua's result changes", function()
         end
         equal(changes, count, "function " .. i)
         if case[3] then equal(#list, case[3], "breaks of function " .. i) end
+        local piece, value = 0, nil
+        for k = 1, 4000 do
+            local t = k / 401
+            if piece == 0 or (list[piece] or 10) <= t then
+                repeat piece = piece + 1 until (list[piece] or 10) > t
+                value = f(t)
+            end
+            equal(f(t), value, "between the breaks of function " .. i)
+        end
     end
 end)
 
