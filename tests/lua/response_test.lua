@@ -193,6 +193,15 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     raises_here(function() sys:simulate{ t_end = 3 }:spectrum{ from = 3 } end, "from = 3 must be before the end of the run, t = 3")
 end)
 
+test("the motion is sampled densely enough for the fastest sine of M", function()
+    local M = excitation.harmonic { frequency = 0.1 } + excitation.harmonic { amplitude = 4, frequency = 40 }
+    local run = system { I = 1, k = 1, C = 0.2 }:simulate { M = M, t_end = 100, dt = 1 }
+    local fast = run:spectrum { of = "velocity", from = 80, window = "flat top" }:filter(function(row) return row.frequency > 1 end)
+    local i = fast.amplitude:argmax()
+    near(fast.frequency[i], 40, 1e-9)
+    near(fast.amplitude[i], 0.1 / (2 * math.pi), 1e-4)
+end)
+
 test("the spectrum of a motion does not depend on the rows", function()
     local sys = system{ I = 1, k = 4*math.pi^2, C = 1.5 }
     for _, omega in ipairs{ 2*math.pi, 20*math.pi } do
