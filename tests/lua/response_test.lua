@@ -165,6 +165,21 @@ test("a response is drawn up to its folds, and its rows stay those of the given 
     has(description { style = "points" }, #c .. " points")
 end)
 
+test("a response by at and one to a harmonic M begin where they are told, as the steady motion does", function()
+    local M = excitation.harmonic { amplitude = 0.4, frequency = 0.24 }
+    for _, walls in ipairs { false, { upper = 5, stiffness = 100 } } do -- elastic walls that no motion reaches
+        local duffing = system { I = 1, k = 1, C = 0.1, spring = spring.polynomial { [3] = 1 }, walls = walls or nil }
+        for _, start in ipairs { { theta0 = 0 }, { theta0 = 3 }, { velocity0 = 6 } } do
+            local amplitude = duffing:steady(merged(start, { M = M })).amplitude
+            assert((amplitude > 1) == (start.theta0 ~= 0))
+            for _, more in ipairs { { amplitude = 0.4, over = { frequency = { 0.24 } } },
+                { at = function(p) return { M = excitation.harmonic { amplitude = 0.4, frequency = p.f } } end, over = { f = { 0.24 } } } } do
+                near(duffing:response(merged(start, more)).amplitude[1], amplitude, 1e-9)
+            end
+        end
+    end
+end)
+
 test("a spectrum shows each sine with its amplitude, whatever the window", function()
     local sys = system{ I = 1, k = 400, C = 40 }
     local M = excitation.harmonic{ amplitude = 4, frequency = 1 } + excitation.harmonic{ amplitude = 2, frequency = 2.5 } + 3
