@@ -70,14 +70,9 @@ test("a run interrupted by an error of M can be continued to its end", function(
     end
 end)
 
-test("a continued run can be saved and repeated, and has energy and story", function()
+test("the file of a continued run repeats all of it", function()
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
-    local _, file = reloaded(longer)
-    has(read(file), "t_end = 8, dt = 0.1")
-    local total = longer:energy().total
-    local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
-    near(total.input, whole:energy().total.input, 1e-12)
-    equal(longer:explain(), whole:explain())
+    has(read(select(2, reloaded(longer))), "t_end = 8, dt = 0.1")
 end)
 
 test("a run without dense output is continued without it", function()
