@@ -160,6 +160,9 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
         says(found, "sum of native terms")
         equal(run(f, integrator.exact {}).theta, found.theta)
         near((run(f, nil, 8):continue { t_end = 20 }:at(20)), (found:at(20)), 1e-13)
+        local late = run(0.7 * excitation.scripted(f):delay(2.3):window(1, 11))
+        equal(tostring(late.integrator), "integrator.exact{}")
+        near(late.theta, run(unread(function(t) return t >= 1 and t < 11 and 0.7 * f(t - 2.3) or 0 end)).theta, 1e-9)
         if period then
             local s = sys:steady { M = f }
             near(s.period / period - math.floor(s.period / period + 0.5), 0, 1e-12)
