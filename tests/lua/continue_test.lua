@@ -23,6 +23,7 @@ for name, integrator in pairs {
         local first = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1, integrator = integrator }
         local longer = first:continue { t_end = 7 }:continue { t_end = 12 }
         same_rows(longer, whole)
+        equal(tostring(longer.integrator), tostring(integrator))
         equal(first.t_end, 3.4)
         equal(#first, 35)
         equal(longer.t_start, 0.0)
