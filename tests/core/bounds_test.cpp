@@ -209,6 +209,12 @@ TEST_CASE("whole powers, waves and sums of exponentials have tight bounds") {
     CHECK(told.disc.r == Approx(1).epsilon(1e-12));
     CHECK(told.range.lo == 0);
     CHECK(told.range.hi == Approx(1).epsilon(1e-12));
+    const Formula square({{.op = Op::multiply, .to = 1, .a = 0, .b = 0}, {.op = Op::give, .a = 1}}, {0, 0}, false, 1,
+                         0);
+    walk.begin(square, nullptr, true);
+    walk.set(0, {0.5, 1.5}, {-1, 2});
+    CHECK(walk.run().range.lo == 0);
+    CHECK(walk.run().range.hi == Approx(4).epsilon(1e-12));
 }
 
 }  // namespace dinal::bounds_test

@@ -111,6 +111,28 @@ support.test("what two mistakes may have made is told of both, the nearer one fi
   support.equal(select(2, course.verdict(question, 2.001)), "the nearer. Or: the farther")
 end)
 
+support.test("a usual mistake gets the hint that fits the unit of the answer, and no other", function()
+  local turn, half, double = 2*math.pi, "half of it: where", "twice as much: where"
+  local missing, much, prefix = "2 pi is missing", "2 pi too much", "a prefix"
+  local swing, swings = "half of it: half a cycle", "twice as much: a whole cycle"
+  local hints = {
+    rad = { [0.5] = swing, [2] = swings, [180/math.pi] = "in degrees", [1/turn] = missing, [turn] = much },
+    degrees = { [0.5] = half, [2] = double, [math.pi/180] = "in radians" },
+    ["time units"] = { [0.5] = swing, [2] = swings, [1/turn] = missing, [turn] = much },
+    percent = { [0.5] = half, [2] = double, [0.01] = "a fraction where percent are" },
+    [""] = { [0.5] = half, [2] = double, [100] = "percent where the plain number is", [1/turn] = missing, [turn] = much },
+    torque = { [0.5] = half, [2] = double },
+  }
+  for unit, known in pairs(hints) do
+    local question = { sheet = {}, answer = 0.37, tolerance = 1e-3, unit = unit }
+    known[-1], known[1000], known[0.001] = "the sign is not", prefix, prefix
+    for _, factor in ipairs { -1, 0.5, 2, 180/math.pi, math.pi/180, 1/turn, turn, 0.01, 100, 1000, 0.001, 3 } do
+      support.has(select(2, course.verdict(question, factor*0.37)), known[factor] or "not right")
+    end
+    support.has(select(2, course.verdict(question, 1/0.37)), unit == "time units" and "its reciprocal" or "not right")
+  end
+end)
+
 support.test("an absolute tolerance is that of the answer, and of a mistake ten times as great ten times as much", function()
   local question = { sheet = {}, answer = 1, within = 0.1, mistakes = { { 10, "ten times" } } }
   support.equal((course.verdict(question, 1.05)), true)

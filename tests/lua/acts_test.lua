@@ -185,6 +185,20 @@ test("events at the instant of one that stops the run are reported, too", functi
     end
 end)
 
+test("an event whose value jumps over zero is reported by every method", function()
+    local ball = system { I = 1, k = 0, walls = { lower = -1, upper = 1, restitution = 0.8 } }
+    for _, method in ipairs(methods) do
+        for _, case in ipairs {
+            { function(t, theta) return (t < 1 and -2 or t < 3 and 2 or -2) - theta / 9 end, { 1, 3 } },
+            { function(t) return math.floor(t) % 2 - 0.5 end, { 1, 2, 3, 4, 5 } },
+            { function(_, _, v) return v + 0.05 end, { 1, 3.5 } },
+        } do
+            local run = ball:simulate { velocity0 = 1, t_end = 5.5, integrator = method, events = { { when = case[1] } } }
+            near(of_kind(run, "user").t, vector(case[2]), 1e-12)
+        end
+    end
+end)
+
 test("an event is located at a flat zero", function()
     local run = block:simulate { velocity0 = 1, t_end = 3, dt = 1, events = { { when = function(t) return (t - 1) ^ 3 end } } }
     near(run.events[1].t, 1, 1e-15)

@@ -123,7 +123,7 @@ test("bodies are placed along their links in animations and plots, beginning wit
     local moving = rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }
     local x = {}
     for at, name in animated(moving, {}):gmatch '<text x="([%d.]+)"[^>]*>(%a+)</text>' do x[name] = tonumber(at) end
-    assert(x.motor < x.load and x.load < x.brake)
+    assert(x.motor < x.clutch and x.clutch < x.load and x.load < x.rod and x.rod < x.brake)
     local file = temporary ".txt"
     moving:plot{ file = file }
     local order = {}

@@ -23,6 +23,7 @@ for name, integrator in pairs {
         local first = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1, integrator = integrator }
         local longer = first:continue { t_end = 7 }:continue { t_end = 12 }
         same_rows(longer, whole)
+        equal(tostring(longer.integrator), tostring(integrator))
         equal(first.t_end, 3.4)
         equal(#first, 35)
         equal(longer.t_start, 0.0)
@@ -70,14 +71,9 @@ test("a run interrupted by an error of M can be continued to its end", function(
     end
 end)
 
-test("a continued run can be saved and repeated, and has energy and story", function()
+test("the file of a continued run repeats all of it", function()
     local longer = nd:simulate { M = M, theta0 = 2, t_end = 3.4, dt = 0.1 }:continue { t_end = 8 }
-    local _, file = reloaded(longer)
-    has(read(file), "t_end = 8, dt = 0.1")
-    local total = longer:energy().total
-    local whole = nd:simulate { M = M, theta0 = 2, t_end = 8, dt = 0.1 }
-    near(total.input, whole:energy().total.input, 1e-12)
-    equal(longer:explain(), whole:explain())
+    has(read(select(2, reloaded(longer))), "t_end = 8, dt = 0.1")
 end)
 
 test("a run without dense output is continued without it", function()

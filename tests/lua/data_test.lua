@@ -28,6 +28,7 @@ test("rows are filtered by a function or a mask, and sorted by a column with nan
     local d = data{ r = { 3, 0/0, 1, 2 }, word = { "c", "x", "a", "b" } }
     equal(table.concat(d:sort("r", { descending = true }).word), "cbax")
     equal(table.concat(d:sort("word").word), "abcx")
+    equal(table.concat(d:sort("word", { descending = true }).word), "xcba")
     equal(table.concat(d:filter(function(row) return row.r == row.r end).word), "cab")
     equal(table.concat(d:filter(d.r:map(function(x) return x > 1 end)).word), "cb")
     equal(#d:filter(function() return false end), 0)
@@ -98,8 +99,11 @@ test("a raw log may have lines before it, names, units, disorder, duplicates and
     equal(table.concat(d.Bemerkung), "abc")
     equal(d.units.Zeit .. d.units.Weg .. tostring(d.units.Bemerkung), "msmmnil")
     equal(log_of(log, { skip = 2, sort = true }).Weg, vector { 2, 3, 4, 5 })
-    equal(log_of(log, { skip = 2, duplicates = "first" }).Weg, vector { 5, 2, 4 })
-    equal(log_of(log, { skip = 2, duplicates = "last" }).Weg, vector { 5, 3, 4 })
+    for which, kept in pairs { first = { vector { 5, 2, 4 }, "cab" }, last = { vector { 5, 3, 4 }, "cdb" } } do
+        d = log_of(log, { skip = 2, duplicates = which })
+        equal(d.Weg, kept[1])
+        equal(table.concat(d.Bemerkung), kept[2])
+    end
     d = log_of("1,2\n3,4\n", { names = { "t", "theta" } })
     equal(d.theta, vector { 2, 4 })
     d = log_of("time,angle\n1,2\n3,4\n", { names = { "t", "x" } })

@@ -86,6 +86,15 @@ test("an impure function among several terms is detected, also delayed or window
     found_out(function() return excitation.scripted(math.sin) + counted() end)
 end)
 
+test("a function that reads what a sampled one changes is detected, whether it is read or called", function()
+    for _, as in ipairs { function(f) return f end, unread } do
+        local x = 0
+        local M = excitation.sampled(function(_, theta) x = 0.5 * theta return 0 end, { every = 0.5 })
+            + as(function(t) return math.sin(t) - x end)
+        has(system { I = 1, k = 1, C = 0.1 }:simulate { M = M, t_end = 6, dt = 1 }.outcome, "M depends on more than its arguments")
+    end
+end)
+
 test("delayed functions must be pure, too", function()
     local calls = 0
     local M = excitation.delayed(function(t, theta) calls = calls + 1 return -theta + 1e-9 * calls end, { by = 0.1 })

@@ -15,7 +15,7 @@ end
 
 test("an open clutch has no events, and its story mentions neither slipping nor sticking", function()
     local M = { a = function(t, _, v) return t - v.a end, b = function(t, _, v) return t - v.b end }
-    for _, normal in ipairs { 0, function() return 0 end, function(t) return -t end } do
+    for _, normal in ipairs { 0, -2, function() return 0 end, function(t) return -t end } do
         local links = { clutch = { "a", "b", Rd = 1, normal = normal } }
         local rig = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = links }
         local run = rig:simulate { M = M, t_end = 1 }
@@ -23,7 +23,7 @@ test("an open clutch has no events, and its story mentions neither slipping nor 
         near(run.a.velocity[#run], math.exp(-1), 1e-12)
         for _, each in ipairs { run, rig:simulate { t_end = 1 } } do
             has_not(each:explain(), "slipped", "stuck")
-            if normal ~= 0 then says(each, "It was open all the time.") end -- a constant 0 is no contact
+            if type(normal) ~= "number" then says(each, "It was open all the time.") end -- else there is no contact
         end
     end
 end)

@@ -142,20 +142,22 @@ test("a phase plane without k shows the velocity, and has corners at a wall or a
     has(picture(well:simulate { theta0 = 1.2, t_end = 5, dt = 0.1 }, {}, "phase_plot"), "theta', rad/time")
     -- Rows far apart: only the impact knows that the mass was at the wall, with the velocity 1 before and -0.5 after it.
     local ball = system { I = 1, k = 1, walls = { upper = 0, restitution = 0.5 } }
-    local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1 }
-    local file = temporary ".svg"
-    run:phase_plot { file = file, xlim = { -1, 1 }, ylim = { -1, 1 }, axes = false }
-    local points, wall = {}, 0
-    for x, y in read(file):match("rgb%(0%%, ?44[^>]*"):gmatch "[ML] ([%d.]+) ([%d.]+)" do
-        points[#points + 1] = { x = tonumber(x), y = tonumber(y) }
-        wall = math.max(wall, points[#points].x)
+    for _, dense in ipairs { true, false } do
+        local run = ball:simulate { theta0 = -1, t_end = 3, dt = 1, dense = dense }
+        local file = temporary ".svg"
+        run:phase_plot { file = file, xlim = { -1, 1 }, ylim = { -1, 1 }, axes = false }
+        local points, wall = {}, 0
+        for x, y in read(file):match("rgb%(0%%, ?44[^>]*"):gmatch "[ML] ([%d.]+) ([%d.]+)" do
+            points[#points + 1] = { x = tonumber(x), y = tonumber(y) }
+            wall = math.max(wall, points[#points].x)
+        end
+        local unit, corner = wall - points[1].x, false -- the run starts at theta = -1, velocity = 0; the wall is at 0
+        for i = 2, #points do
+            local before, after = (points[1].y - points[i - 1].y) / unit, (points[1].y - points[i].y) / unit
+            corner = corner or math.abs(before - 1) < 1e-3 and math.abs(after + 0.5) < 1e-3 and points[i - 1].x == wall
+        end
+        assert(corner, "the velocity does not jump at the wall")
     end
-    local unit, corner = wall - points[1].x, false -- the run starts at theta = -1, velocity = 0; the wall is at 0
-    for i = 2, #points do
-        local before, after = (points[1].y - points[i - 1].y) / unit, (points[1].y - points[i].y) / unit
-        corner = corner or math.abs(before - 1) < 1e-3 and math.abs(after + 0.5) < 1e-3 and points[i - 1].x == wall
-    end
-    assert(corner, "the velocity does not jump at the wall")
 end)
 
 test("a run from a file is drawn, too", function()

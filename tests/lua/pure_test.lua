@@ -7,7 +7,7 @@ local sys, methods, runs = asked.sys, asked.methods, asked.runs
 local function believed(make, more)
     for i, run in runs(make, more) do
         assert(#run > 10, i .. ": " .. run.outcome)
-        has_not(run.outcome, "no function")
+        has_not(run.outcome, "depends on more")
     end
 end
 
@@ -123,7 +123,6 @@ test("a memory that start makes is new in each run, and continues in a continued
         near(last_of(once), last_of(whole), 1e-12)
         spring:simulate(task(7, 2 * M + 1)) -- another run of the same controller between
         for i = 1, 2 do equal(last_of(first:continue { t_end = 10 }), last_of(once)) end
-        near(last_of(first:continue { t_end = 7 }:continue { t_end = 10 }), last_of(whole), 1e-12)
     end
 end)
 

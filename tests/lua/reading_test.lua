@@ -160,6 +160,9 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
         says(found, "sum of native terms")
         equal(run(f, integrator.exact {}).theta, found.theta)
         near((run(f, nil, 8):continue { t_end = 20 }:at(20)), (found:at(20)), 1e-13)
+        local late = run(0.7 * excitation.scripted(f):delay(2.3):window(1, 11))
+        equal(tostring(late.integrator), "integrator.exact{}")
+        near(late.theta, run(unread(function(t) return t >= 1 and t < 11 and 0.7 * f(t - 2.3) or 0 end)).theta, 1e-9)
         if period then
             local s = sys:steady { M = f }
             near(s.period / period - math.floor(s.period / period + 0.5), 0, 1e-12)
@@ -381,6 +384,12 @@ test("breaks are the very times at which Lua's result changes", function()
         { function(t) return math.floor(t * 1e3) % 1000 < 500 and 5 or 0 end, 19, 19 },
         { function(t) return t % 1 + 0.5 > 2 and 5 or 0 end, 0, 0 },
         { function(t) return math.atan(t) > 1 and 2 or math.log(t + 1) > 2 and 3 or math.sqrt(t) < 1 and 4 or 5 end, 2 },
+        -- folds below zero, and by a negative number
+        { function(t) return math.fmod(t - 3, 2) < -1.5 and 2 or 3 end, 2 },
+        { function(t) return (t - 3) % -2 < -1.1 and 2 or 3 end, 10 },
+        { function(t) return (t - 3) // -0.7 end, 14 },
+        { function(t) return math.ceil(-t) end, 9 },
+        { function(t) return math.abs(math.abs(t - 5) - 3) > 1 and 2 or 3 end, 4 },
     }
     for i, case in ipairs(cases) do
         local f, count = case[1], case[2]
@@ -391,6 +400,15 @@ test("breaks are the very times at which Lua's result changes", function()
         end
         equal(changes, count, "function " .. i)
         if case[3] then equal(#list, case[3], "breaks of function " .. i) end
+        local piece, value = 0, nil
+        for k = 1, 4000 do
+            local t = k / 401
+            if piece == 0 or (list[piece] or 10) <= t then
+                repeat piece = piece + 1 until (list[piece] or 10) > t
+                value = f(t)
+            end
+            equal(f(t), value, "between the breaks of function " .. i)
+        end
     end
 end)
 

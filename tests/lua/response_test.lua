@@ -83,17 +83,20 @@ test("elastic walls, a slider behind a spring and a normal load answer to a sine
     local frequencies = vector.linspace(0.3, 0.5, 3)
     local function normal(t) return 1 + 0.5 * math.sin(2 * math.pi * 0.4 * t) end
     for _, case in ipairs {
-        { frequencies, walls = { lower = -0.3, upper = 0.3, stiffness = 50, damping = 1 } },
-        { frequencies, friction = friction.jenkins { stiffness = 10, Rd = 0.3 } },
-        { { 0.4 }, Rd = 0.3, normal = normal },
+        { frequencies, { walls = { lower = -0.3, upper = 0.3, stiffness = 50, damping = 1 } } },
+        { frequencies, { friction = friction.jenkins { stiffness = 10, Rd = 0.3 } } },
+        { { 0.4 }, { Rd = 0.3, normal = normal } },
+        -- the greater of two motions, which its start decides
+        { { 0.6 }, { C = 0.1, spring = spring.polynomial { [3] = 4 }, walls = { upper = 5, stiffness = 100 } }, { theta0 = 3 } },
     } do
-        local sys = system(merged({ I = 1, k = 4, C = 0.2 }, { walls = case.walls, friction = case.friction, Rd = case.Rd, normal = case.normal }))
-        local c = sys:response { amplitude = 1, over = { frequency = case[1] } }
-        local by_at = sys:response { over = { f = case[1] }, at = function(p)
+        local sys, start = system(merged({ I = 1, k = 4, C = 0.2 }, case[2])), case[3]
+        local c = sys:response(merged({ amplitude = 1, over = { frequency = case[1] } }, start))
+        local by_at = sys:response(merged({ over = { f = case[1] }, at = function(p)
             return { M = excitation.harmonic { amplitude = 1, frequency = p.f }, frequency = p.f }
-        end }
+        end }, start))
         equal(#c, #by_at)
         for _, name in ipairs { "amplitude", "lag", "stable", "branch" } do near((c[name] - by_at[name]):abs():max(), 0, 1e-9) end
+        assert(not start or c.amplitude[1] > 1)
     end
     local varies = system { I = 1, k = 4, C = 0.2, Rd = 0.3, normal = normal }
     refuses(function(o) varies:response(o) end, { { { over = { frequency = { 0.3 } } }, "period" } })
@@ -193,6 +196,15 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     raises_here(function() sys:simulate{ t_end = 3 }:spectrum{ from = 3 } end, "from = 3 must be before the end of the run, t = 3")
 end)
 
+test("the motion is sampled densely enough for the fastest sine of M", function()
+    local M = excitation.harmonic { frequency = 0.1 } + excitation.harmonic { amplitude = 4, frequency = 40 }
+    local run = system { I = 1, k = 1, C = 0.2 }:simulate { M = M, t_end = 100, dt = 1 }
+    local fast = run:spectrum { of = "velocity", from = 80, window = "flat top" }:filter(function(row) return row.frequency > 1 end)
+    local i = fast.amplitude:argmax()
+    near(fast.frequency[i], 40, 1e-9)
+    near(fast.amplitude[i], 0.1 / (2 * math.pi), 1e-4)
+end)
+
 test("the spectrum of a motion does not depend on the rows", function()
     local sys = system{ I = 1, k = 4*math.pi^2, C = 1.5 }
     for _, omega in ipairs{ 2*math.pi, 20*math.pi } do
@@ -226,7 +238,9 @@ test("poincare samples a run once a period", function()
     near(run:poincare{ from = 25.3 }.theta[9], (run:at(35.3)), 1e-12)
     local function of(M) return nondimensional{}:simulate{ M = M, t_end = 2, dt = 1 } end
     raises_here(function() of(function(t) return t end):poincare{} end, "has no known one")
-    raises_here(function() of(2):poincare{} end, "give a period")
+    for _, M in ipairs{ 2, excitation.harmonic{ frequency = 0.8 }:window(0, 9) } do
+        raises_here(function() of(M):poincare{} end, "give a period")
+    end
     local picture = tostring(d:plot{ show = false })
     assert(picture:find("^ *θ'") and picture:find("θ, Mc/k\n*$"), picture)
     raises_here(function() run:poincare{ period = 1, from = 60 } end, "is not in the run")

@@ -50,7 +50,7 @@ test("the energy adds up for one body with varying friction and bristles, and fo
     near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
 end)
 
-test("the energy of several bodies is that of the run itself: it asks no function, and knows what went before", function()
+test("the energy of several bodies is that of the run itself: it asks no function", function()
     local calls = 0
     local function M(t) calls = calls + 1 return math.sin(1.3 * t) + 0 * #tostring(t) end
     local rig = pair({ I = 1, k = 2, Rd = 0.2 }, { I = 2, k = 1, walls = { upper = 0.4, restitution = 0.6 } }, { k = 3, C = 0.1, Rd = 0.1 })
@@ -61,11 +61,9 @@ test("the energy of several bodies is that of the run itself: it asks no functio
     whole:explain()
     equal(calls, before)
     assert(total.closure < 1e-11, total.closure)
-    options.t_end = 17.3
-    local parts = rig:simulate(options):continue { t_end = 40 }:energy()
-    for name, value in pairs(total) do near(parts.total[name], value, name == "error" and 1e-11 or 1e-9) end
-    near(parts.start.spring, (2 + 3) * 0.3 ^ 2 / 2, 1e-15)
-    near(parts.finish.kinetic + parts.finish.spring - parts.start.kinetic - parts.start.spring, total.kinetic + total.spring, 1e-9)
+    local energy = whole:energy()
+    near(energy.start.spring, (2 + 3) * 0.3 ^ 2 / 2, 1e-15)
+    near(energy.finish.kinetic + energy.finish.spring - energy.start.kinetic - energy.start.spring, total.kinetic + total.spring, 1e-9)
 end)
 
 test("explain describes a run of several bodies", function()

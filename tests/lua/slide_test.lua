@@ -527,6 +527,13 @@ test("functions that jump at one surface have one share, in loads and in rates",
         theta0 = 0.3, velocity0 = -0.6, t_end = 3,
     }
     for i, t in ipairs(run.t) do near(run.states.z[i], -0.25 * (1 - math.exp(-2 * t)), 1e-12) end
+    -- Two surfaces that meet at the start are two.
+    run = system { I = 1, k = 1 }:simulate {
+        M = function(_, theta, v) return -3 * sgn(v + 2 * theta) end,
+        states = { z = { start = -0.6, rate = function(_, _, v, z) return -2 * sgn(z.z - v) end } },
+        theta0 = 0.3, velocity0 = -0.6, t_end = 3,
+    }
+    for i, t in ipairs(run.t) do near(run.states.z[i], -0.6 * math.exp(-2 * t), 1e-12) end
     -- A pair of loads between two bodies is dry friction between them.
     local bodies = { a = { I = 1 }, b = { I = 2 } }
     local function f(t) return 2.9 * math.sin(t) end

@@ -257,6 +257,7 @@ test("an unstable motion is found if the number of its periods is given", functi
     equal(well:steady{ M = M, theta0 = 0.5 }.status, "none") -- it is chaotic
     local s = well:steady{ M = M, theta0 = 0.5, periods = 1 }
     assert(s.status == "steady" and not s.stable and s.multipliers[1].abs > 1.1, s)
+    has(s, "stops a period, unstable")
     near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
 end)
 

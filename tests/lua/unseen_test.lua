@@ -237,7 +237,8 @@ test("an unproven function is reported as the gap", function()
         return system(system_of):simulate { theta0 = 1, t_end = 1, dt = .5, integrator = integrator.rk4 { h = .01 } }.gap
     end
     near(sampled { k = 1, spring = function(theta) return math.sin(theta) end }, .005, 1e-12)
-    near(sampled { k = 1, friction = function(speed) return .1 + speed end }, .005, 1e-12)
+    local function rising(speed) return .1 + speed end
+    for _, law in ipairs { rising, friction.law(rising) } do near(sampled { k = 1, friction = law }, .005, 1e-12) end
     equal(sampled { k = 1, Rd = .1 }, nil)
 end)
 

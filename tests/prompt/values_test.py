@@ -278,7 +278,13 @@ class Commands(AtHome):
         self.assertIn("wrong.lua:1: unexpected symbol", terminal.enter(":load wrong.lua"))
         self.assertIn("cannot open", terminal.enter(":load missing.lua"))
         terminal.enter("system = 3 math = nil")
+        terminal.enter(":save before.lua")
         terminal.enter(":reset")
+        terminal.enter("y = 2")
+        terminal.enter(":save after.lua")
+        for name, lines in ("before", ['dofile("lab.lua")', "system = 3 math = nil"]), ("after", ["y = 2"]):
+            self.assertEqual((self.home / f"{name}.lua").read_text().splitlines()[1:], lines)
+        terminal.enter("y = nil")
         self.assertIn("no variables", terminal.enter(":who"))
         self.assertEqual(terminal.enter("w, type(system), math.pi > 3"), 'nil\t"function"\ttrue'.expandtabs())
         self.assertRegex(terminal.enter(":time 6 * 7"), r"^42\n[0-9.e-]+ s$")

@@ -321,7 +321,7 @@ class Deaths(InAFolder):
                 def __init__(self): self.d = 6
                 def use(self, x): return self.C + self.d + 7 * x
             tool = Tool()
-            def point(p, b=1): return {"y": (lambda x: inner(x))(p.r) + b + helper.B + tool.use(1)}
+            def point(p, b=1, *, c=3): return {"y": (lambda x: inner(x))(p.r) + b + c + helper.B + tool.use(1)}
             dinal.sweep(over={"r": np.arange(3.)}, run=point, file="map.csv")
             """
         code = textwrap.dedent(code)
@@ -329,7 +329,7 @@ class Deaths(InAFolder):
         for before in ("", "# a remark\n\n"):
             shown = self.python("-c", before + code)
             self.assertEqual((shown.returncode, shown.stderr), (0, ""))
-        changes = [("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("p.r)", "p.r + 1)"), ("3.", "4."), ("C = 5", "C = 4"),
+        changes = [("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("c=3", "c=5"), ("p.r)", "p.r + 1)"), ("3.", "4."), ("C = 5", "C = 4"),
                    ("d = 6", "d = 5"), ("7 * x", "8 * x")]
         # All in one process, as to start one takes longer than to refuse.
         others = "\n".join([f"for old, new in {changes}:",
