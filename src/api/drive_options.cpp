@@ -107,11 +107,12 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
         if (one_way && free) check_one_way(options, system, joint, drive.velocity0);
         if (!joint.walls) continue;
         const double angle = joint.sum(drive.theta0);
-        if (auto wrong = joint.walls->crossed_by(angle)) {
+        double size = 0;
+        for (const auto& [body, by] : joint.of) size += std::fabs(by * drive.theta0[body]);
+        if (auto wrong = joint.walls->crossed_by(angle, size)) {
             if (system.is_link(j)) {
-                wrong->sentence =
-                    fmt::format("theta0: the angle {:.6g} of the link {} is beyond its walls from {:.6g} to {:.6g}",
-                                angle, joint.name, joint.walls->lower, joint.walls->upper);
+                wrong->sentence = fmt::format("theta0: the angle {} of the link {} is beyond its walls from {} to {}",
+                                              angle, joint.name, joint.walls->lower, joint.walls->upper);
             } else if (system.named) {
                 wrong->sentence = fmt::format("theta0.{}{}", joint.name, wrong->sentence.substr(sizeof "theta0" - 1));
             }

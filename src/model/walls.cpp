@@ -32,9 +32,10 @@ std::optional<text::Error> Walls::complaint() const {
     return std::nullopt;
 }
 
-std::optional<text::Error> Walls::crossed_by(double theta) const {
-    if (theta >= lower && theta <= upper) return std::nullopt;
-    return text::Error{.sentence = fmt::format("theta0 = {:.6g} is beyond the wall at {} = {:.6g}", theta,
+std::optional<text::Error> Walls::crossed_by(double theta, double size) const {
+    const double rounded = 4 * std::numeric_limits<double>::epsilon() * std::max(size, std::fabs(theta));
+    if (theta >= lower - rounded && theta <= upper + rounded) return std::nullopt;
+    return text::Error{.sentence = fmt::format("theta0 = {} is beyond the wall at {} = {}", theta,
                                                theta < lower ? "lower" : "upper", theta < lower ? lower : upper),
                        .option = "theta0"};
 }

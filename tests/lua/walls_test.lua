@@ -247,6 +247,12 @@ test("runs that begin at an elastic stop exactly, or to rounding, go on", functi
         run = rig:simulate { theta0 = { a = start + q, b = q }, velocity0 = { a = fast + 0.2, b = 0.2 }, M = { a = M }, t_end = 20 }
         equal(run.status, "end")
         closes(run)
+        -- The angle of a rigid stop is a difference of angles, too: a start beyond it by rounding is at it.
+        link.walls = { lower = lower, restitution = lot(0, 0.9) }
+        rig = system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = k } }, links = { stop = link } }
+        run = rig:simulate { theta0 = { a = lower + q, b = q }, velocity0 = { a = fast + 0.2, b = 0.2 }, M = { a = M }, t_end = 20 }
+        equal(run.status, "end")
+        assert(run.stop.theta:min() > lower - 1e-12, run.stop.theta:min())
     end
 end)
 
