@@ -12,6 +12,21 @@ test("an encoder acts as a spring in steps, whose energy is conserved", function
     for t = 1, 10 do near(energy(run:at(t)), energy(theta0, 0), 1e-12) end
 end)
 
+test("the greater of two saturated terms is not decided by their rounding again and again", function()
+    local function tanh(x) return (math.exp(x) - math.exp(-x)) / (math.exp(x) + math.exp(-x)) end
+    local function go(greater)
+        return system { I = 1, k = 1, C = 0.1 }:simulate {
+            M = function(t, theta, velocity, s) return greater(tanh(-9.94 * theta - 24.27 * velocity - 3 * s.z - 1.3), tanh(-14.61 * theta + 16.82 * velocity - 6.6 * s.z - 1.3)) + math.sin(t) end,
+            states = { z = { start = 0.3, rate = function(t, theta, velocity, s) return theta - s.z end } }, theta0 = 2, t_end = 30,
+        }
+    end
+    for name, greater in pairs { min = math.min, max = math.max } do
+        local run = go(greater)
+        equal(run.status, "end", name)
+        near(run:at(30), go(function(a, b) return (a + b + (name == "min" and -1 or 1) * ((a - b) ^ 2) ^ 0.5) / 2 end):at(30), 1e-8)
+    end
+end)
+
 test("short visits beyond a condition are not missed", function()
     -- it turns just behind the threshold, for a very short time
     for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do
