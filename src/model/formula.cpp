@@ -220,6 +220,7 @@ Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool mo
     time[0] = 1;
     of_motion_ = has_conditions_ && depends_on(sources(), decides);
     of_time_ = !excitations_.empty() || (has_conditions_ && depends_on(std::move(time), decides));
+    if (of_motion_) find_levels();
 }
 
 void Formula::start(double t, const State& state, std::span<const double> states) {
@@ -309,24 +310,26 @@ int conditions_of(Op op, double decision) {
     return is_comparison(op) ? (op == Op::equal && decision == 0 ? 0 : 1) : op == Op::abs ? 1 : 2;
 }
 
-/// The distances to the ends of the piece; an equality ends as soon as the two differ.
-std::pair<double, double> margins_of(Op op, double a, double b, double decision) {
+/// The distance to the end of the piece behind which the decision is `beyond`; an equality ends as soon as the two
+/// differ.
+double margin_of(Op op, double a, double b, double decision, double beyond) {
+    const bool below = beyond < decision;
     switch (op) {
         case Op::less:
         case Op::less_equal:
-            return {decision != 0 ? b - a : a - b, never};
+            return decision != 0 ? b - a : a - b;
         case Op::equal:
-            return {-std::fabs(a - b), never};
+            return -std::fabs(a - b);
         case Op::abs:
-            return {decision * a, never};
+            return decision * a;
         case Op::floor:
-            return {a - decision, decision + 1 - a};
+            return below ? a - (beyond + 1) : beyond - a;
         case Op::ceil:
-            return {a - (decision - 1), decision - a};
+            return below ? a - beyond : beyond - 1 - a;
         case Op::fmod:
-            return {a / b - (decision > 0 ? decision : decision - 1), (decision < 0 ? decision : decision + 1) - a / b};
+            return below ? a / b - (decision > 0 ? decision : beyond) : (decision < 0 ? decision : beyond) - a / b;
         default:
-            return {a / b - decision, decision + 1 - a / b};
+            return below ? a / b - (beyond + 1) : beyond - a / b;
     }
 }
 
@@ -369,6 +372,82 @@ bool Formula::depends_on(std::vector<std::uint64_t> of, bool (*wanted)(Op op)) c
     return false;
 }
 
+/// Finds the levels of each staircase whose result is only compared with constants: the first whole numbers behind
+/// which a comparison changes. Between them a condition at each step would cut the motion without need.
+void Formula::find_levels() {
+    std::vector<char> is_constant(registers_.size(), 1);
+    is_constant[0] = 0;
+    if (motion_) is_constant[1] = is_constant[2] = 0;
+    std::fill_n(is_constant.begin() + static_cast<std::ptrdiff_t>(states_), state_count_, 0);
+    std::vector<std::size_t> stairs;
+    for (std::size_t at = 0; at < steps_.size(); ++at) {
+        const Step& s = steps_[at];
+        if (!is_comparison(s.op) && s.op < Op::jump) is_constant[s.to] = 0;
+        constexpr std::size_t most = 64;
+        if (is_staircase(s.op) && stairs.size() < most) stairs.push_back(at), levels_[at];
+    }
+    const auto each = [&](std::uint64_t of, const auto& call) {
+        for (std::size_t i = 0; i < stairs.size(); ++i) {
+            if ((of >> i & 1U) != 0) call(stairs[i]);
+        }
+    };
+    const auto use = [&](std::uint64_t of) { each(of, [&](std::size_t at) { levels_.erase(at); }); };
+    const auto compare = [&](std::uint64_t of, Op op, std::size_t with, bool left) {
+        if (!is_constant[with]) return use(of);
+        const double bits = registers_[with], level = op >= Op::less_whole ? static_cast<double>(to_whole(bits)) : bits;
+        const bool equals = op == Op::equal || op == Op::equal_whole;
+        const bool strict = op == Op::less || op == Op::less_whole;
+        each(of, [&](std::size_t at) {
+            const auto found = levels_.find(at);
+            if (found == levels_.end()) return;
+            if (equals || strict == left) found->second.push_back(std::ceil(level));
+            if (equals || strict != left) found->second.push_back(std::floor(level) + 1);
+        });
+    };
+    std::map<std::size_t, std::vector<std::uint64_t>> ways;  // the staircases that registers may hold at a step
+    ways[0].resize(registers_.size());
+    while (!ways.empty() && !levels_.empty()) {
+        const auto node = ways.extract(ways.begin());
+        std::vector<std::uint64_t> of = node.mapped();
+        const Step& s = steps_[node.key()];
+        const auto lead = [&](std::size_t to) {
+            std::vector<std::uint64_t>& there = ways.try_emplace(to, of).first->second;
+            for (std::size_t i = 0; i < of.size(); ++i) there[i] |= of[i];
+        };
+        if (is_comparison(s.op)) {
+            if (of[s.a] != 0) compare(of[s.a], s.op, s.b, true);
+            if (of[s.b] != 0) compare(of[s.b], s.op, s.a, false);
+            lead(s.yes), lead(s.no);
+        } else if (s.op == Op::jump) {
+            lead(s.yes);
+        } else {
+            const bool passes = s.op == Op::move || s.op == Op::to_float || s.op == Op::exact;
+            if (!passes) use(of[s.a] | of[s.b]);
+            if (s.op >= Op::give) continue;
+            const auto stair = std::find(stairs.begin(), stairs.end(), node.key());
+            of[s.to] = passes                  ? of[s.a]
+                       : stair == stairs.end() ? 0
+                                               : std::uint64_t{1} << static_cast<unsigned>(stair - stairs.begin());
+            lead(node.key() + 1);
+        }
+    }
+}
+
+/// The decisions on the other sides of the one or two conditions of a step.
+std::pair<double, double> Formula::beyond(std::size_t at, double decision) const {
+    const Op op = steps_[at].op;
+    if (is_comparison(op)) return {1 - decision, never};
+    if (op == Op::abs) return {-decision, never};
+    const auto found = levels_.find(at);
+    if (found == levels_.end()) return {decision - 1, decision + 1};
+    std::pair<double, double> ends{-never, never};
+    for (const double level : found->second) {
+        if (level <= decision) ends.first = std::max(ends.first, level - 1);
+        if (level > decision) ends.second = std::min(ends.second, level);
+    }
+    return ends;
+}
+
 void Formula::decide(terms::Piece& piece, double t, const State& state, std::span<const double> states,
                      std::uint64_t again) {
     constexpr double whole_numbers = 0x1p53;
@@ -394,9 +473,9 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             if (std::fabs(decision) < whole_numbers) {
                 made.decisions[at] = decision;
                 const int conditions = conditions_of(s.op, decision);
-                const double below = compares ? 1 - decision : s.op == Op::abs ? -decision : decision - 1;
-                if (conditions > 0) made.conditions.push_back({at, below, all});
-                if (conditions > 1) made.conditions.push_back({at, decision + 1, all});
+                const auto [below, above] = beyond(at, decision);
+                if (conditions > 0 && std::isfinite(below)) made.conditions.push_back({at, below, all});
+                if (conditions > 1 && std::isfinite(above)) made.conditions.push_back({at, above, all});
                 if (!compares) result = result_on(s.op, a, b, decision);
             }
         }
@@ -424,11 +503,11 @@ double Formula::value_on(const terms::Piece& piece, double t, const State& state
     return run(first, r, [&](const Step* s, double a, double b) -> const Step* {
         const double decision = piece.decisions[static_cast<std::size_t>(s - first)];
         if (decision != decision) return nullptr;
-        if (margins != nullptr) {
-            const auto [below, above] = margins_of(s->op, a, b, decision);
-            const int conditions = conditions_of(s->op, decision);
-            if (conditions > 0) margins->push_back(below);
-            if (conditions > 1) margins->push_back(above);
+        const auto is_of = [&](std::size_t c) {
+            return c < piece.conditions.size() && first + piece.conditions[c].step == s;
+        };
+        while (margins != nullptr && is_of(margins->size())) {
+            margins->push_back(margin_of(s->op, a, b, decision, piece.conditions[margins->size()].beyond));
         }
         if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
         r[s->to] = result_on(s->op, a, b, decision);
@@ -500,20 +579,21 @@ double rate_on(Op op, double da, double db, double decision) {
 
 namespace {
 
-/// The rate of the first margin of a step; that of the second, if there is one, is its opposite.
-double first_margin_rate(Op op, double a, double b, double da, double db, double decision) {
+/// The rate of the margin of a condition.
+double rate_of_margin(Op op, double a, double b, double da, double db, double decision, double beyond) {
+    const double sign = beyond < decision ? 1 : -1;
     switch (op) {
         case Op::less:
         case Op::less_equal:
         case Op::abs:
-            return margins_of(op, da, db, decision).first;  // linear
+            return margin_of(op, da, db, decision, beyond);  // linear
         case Op::floor:
         case Op::ceil:
-            return da;
+            return sign * da;
         case Op::equal:
             return failure;
         default:
-            return rate_of(Op::divide, a, b, da, db);
+            return sign * rate_of(Op::divide, a, b, da, db);
     }
 }
 
@@ -527,7 +607,7 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
     if (motion_) dot[1] = rate.theta, dot[2] = rate.velocity;
     std::copy(rates.begin(), rates.end(), dot.begin() + static_cast<std::ptrdiff_t>(states_));
     double found = failure;
-    std::size_t passed = 0;
+    const terms::Piece::Condition& wanted = piece.conditions[condition];
     const Step* const first = steps_.data();
     double* const r = registers_.data();
     run(first, r, [&](const Step* s, double a, double b) -> const Step* {
@@ -537,11 +617,7 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
             if (!is_comparison(s->op) && s->op < Op::jump) dot[s->to] = rate_of(s->op, a, b, da, db);
             return nullptr;
         }
-        const auto conditions = static_cast<std::size_t>(conditions_of(s->op, decision));
-        if (passed <= condition && condition < passed + conditions) {
-            found = (condition > passed ? -1 : 1) * first_margin_rate(s->op, a, b, da, db, decision);
-        }
-        passed += conditions;
+        if (first + wanted.step == s) found = rate_of_margin(s->op, a, b, da, db, decision, wanted.beyond);
         if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
         r[s->to] = result_on(s->op, a, b, decision);
         dot[s->to] = rate_on(s->op, da, db, decision);

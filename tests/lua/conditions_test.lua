@@ -12,6 +12,30 @@ test("an encoder acts as a spring in steps, whose energy is conserved", function
     for t = 1, 10 do near(energy(run:at(t)), energy(theta0, 0), 1e-12) end
 end)
 
+test("a staircase that is only compared with constants changes at these levels alone", function()
+    local p, w = 0.1, 1e-7
+    local function ended(M) return system { I = 1, k = 1, C = 0.1, Rd = 0.2 }:simulate { M = M, theta0 = 1.2, t_end = 30, times = {} } end
+    local expected = ended(function(t, theta) return (theta >= p and theta < p + w and 5e4 or 0) + 2 * math.sin(0.7 * t) end)
+    for name, M in pairs {
+        floor = function(t, theta) return (math.floor((theta - p) / w) == 0 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        divided = function(t, theta) return ((theta - p) // w == 0 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        ceil = function(t, theta) return (math.ceil((theta - p) / w) == 1 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        between = function(t, theta)
+            local n = math.floor((theta - p) / w)
+            return (n > -1 and n < 0.5 and 5e4 or 0) + 2 * math.sin(0.7 * t)
+        end,
+        branches = function(t, theta)
+            local n = math.floor((theta - p) / w)
+            local first = t % 3 < 1.5
+            return ((first and n == 0 or not first and 0 <= n and not (n >= 1)) and 5e4 or 0) + 2 * math.sin(0.7 * t)
+        end,
+    } do
+        local run = ended(M)
+        near(run:at(30), expected:at(30), 1e-10)
+        equal(run.gap, nil, name)
+    end
+end)
+
 test("the greater of two saturated terms is not decided by their rounding again and again", function()
     local function tanh(x) return (math.exp(x) - math.exp(-x)) / (math.exp(x) + math.exp(-x)) end
     local function go(greater)
