@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "model/bounds.hpp"
 
@@ -650,12 +651,11 @@ public:
     /// A hash of the branches taken; empty if they differ within the interval or cannot be determined.
     std::optional<std::uint64_t> over(double from, double to) {
         seen_ = 0xcbf29ce484222325U;
-        forks_ = 0;
         part_ = std::numeric_limits<double>::quiet_NaN();
         // The program writes each register before it reads it, so earlier values do no harm.
         const auto motion = std::pair(ranges_[1], ranges_[2]);
         ranges_[0] = {{from, to}};
-        const bool same = follow(0, ranges_);
+        const bool same = follow(ranges_);
         if (formula_.motion_) std::tie(ranges_[1], ranges_[2]) = motion;
         return same ? std::optional(seen_) : std::nullopt;
     }
@@ -671,34 +671,37 @@ private:
     }
     void note(std::uint64_t what) { seen_ = mixed(seen_, what); }
 
-    bool follow(std::size_t at, std::vector<Range>& r) {
-        for (;;) {
+    using Ranges = std::vector<Range>;
+
+    /// Follows all branches that conditions on the motion may take. Many of them are followed in the order of the
+    /// steps, so that they meet again and can be united.
+    bool follow(Ranges& r) {
+        count_ = 0;
+        for (std::size_t at = 0;;) {
             const Step& s = formula_.steps_[at];
             const Range a = r[s.a], b = r[s.b];
+            bool ends = false;
             if (is_comparison(s.op)) {
                 if (a.of_motion || b.of_motion) {
-                    constexpr int most_forks = 64;
-                    std::vector<Range> copy = r;
-                    if (++forks_ > most_forks || !follow(s.yes, copy)) return false;
+                    if (!open(s.yes, r)) return false;
                     at = s.no;
-                    continue;
+                } else {
+                    const auto found = decide(s.op, a, b);
+                    if (!found) return false;
+                    note(at + at + (*found ? 1 : 0));
+                    at = *found ? s.yes : s.no;
                 }
-                const auto found = decide(s.op, a, b);
-                if (!found) return false;
-                note(at + at + (*found ? 1 : 0));
-                at = *found ? s.yes : s.no;
-                continue;
-            }
-            if (s.op == Op::jump) {
+            } else if (s.op == Op::jump) {
                 at = s.yes;
             } else if (s.op >= Op::give) {
                 note(at);
                 if (s.op != Op::fail) note(a.piece);
-                return s.op == Op::fail || !a.folds;
+                if (s.op != Op::fail && a.folds) return false;
+                ends = true;
             } else {
                 fails_ = false;
                 Range result = of(s.op, a, b);
-                if (fails_) return note(at), true;
+                if (fails_) note(at), ends = true;
                 result.of_motion = a.of_motion || b.of_motion;
                 result.folds = result.folds || a.folds || b.folds;
                 // The index of the step is mixed in, or equal pieces of both operands would cancel.
@@ -709,6 +712,86 @@ private:
                 }
                 r[s.to] = result;
                 ++at;
+            }
+            if (ends && count_ == 0) return true;
+            if (!ends && (count_ <= few_branches || next_ > at)) continue;
+            if (!ends && !open(at, r)) return false;
+            at = next_;
+            resume(r);
+        }
+    }
+    /// Adds a branch that continues at a step. Returns false if there are too many.
+    bool open(std::size_t at, const Ranges& r) {
+        constexpr std::size_t most_branches = 64;
+        if (count_ > few_branches && read_later_.empty()) find_what_matters();
+        for (std::size_t k = 0; k < count_ && count_ > few_branches; ++k) {
+            if (open_[k].at == at && unite(open_[k].ranges, r, read_later_[at])) return true;
+        }
+        if (count_ == open_.size()) open_.emplace_back();
+        open_[count_].at = at, open_[count_].ranges = r;
+        next_ = count_ == 0 ? at : std::min(next_, at);
+        return ++count_ <= most_branches;
+    }
+    /// Continues the branch that is first; its storage is kept for later ones.
+    void resume(Ranges& r) {
+        std::size_t k = 0;
+        while (open_[k].at != next_) ++k;
+        std::swap(r, open_[k].ranges);
+        std::swap(open_[k], open_[--count_]);
+        next_ = never_opened;
+        for (std::size_t i = 0; i < count_; ++i) next_ = std::min(next_, open_[i].at);
+    }
+    /// A register whose value is read after a step.
+    struct Later {
+        std::size_t place;
+        bool decides;  ///< whether a decision depends on it
+    };
+    /// Unites a branch with another one that continues at the same step, unless a value that changes in time and that
+    /// later decisions depend on differs.
+    static bool unite(Ranges& one, const Ranges& other, const std::vector<Later>& later) {
+        const auto same = [&](std::size_t i) {
+            const Range &x = one[i], &y = other[i];
+            return bits(x.lo) == bits(y.lo) && bits(x.hi) == bits(y.hi) && x.of_motion == y.of_motion &&
+                   x.folds == y.folds && x.piece == y.piece;
+        };
+        const auto changes = [](const Range& x) { return !x.of_motion && !x.is_one(); };
+        for (const auto& [i, decides] : later) {
+            if (decides && (changes(one[i]) || changes(other[i])) && !same(i)) return false;
+        }
+        for (const auto& [i, decides] : later) {
+            if (same(i)) continue;
+            const Range &x = one[i], &y = other[i];
+            one[i] = {{}, true, x.folds || y.folds, mixed(mixed(i + 1, x.piece), y.piece)};
+        }
+        return true;
+    }
+    /// Finds the registers that are read from each step on.
+    void find_what_matters() {
+        const std::vector<Step>& steps = formula_.steps_;
+        read_later_.resize(steps.size());
+        enum : char { no, yes, decides };
+        std::vector<std::vector<char>> at_step(steps.size(), std::vector<char>(ranges_.size(), no));
+        for (std::size_t at = steps.size(); at-- > 0;) {
+            const Step& s = steps[at];
+            std::vector<char>& here = at_step[at];
+            const auto read = [&](std::size_t place, char how) { here[place] = std::max(here[place], how); };
+            if (s.op >= Op::give) {
+                read(s.a, yes);
+            } else if (s.op == Op::jump) {
+                here = at_step[s.yes];
+            } else {
+                here = at_step[is_comparison(s.op) ? s.yes : at + 1];
+                // An operation on whole numbers may fail, which decides as well.
+                char how = is_comparison(s.op) || is_fold(s.op) || s.op >= Op::native ? decides : no;
+                if (is_comparison(s.op)) {
+                    for (std::size_t i = 0; i < here.size(); ++i) read(i, at_step[s.no][i]);
+                } else {
+                    how = std::max(how, std::exchange(here[s.to], char{no}));
+                }
+                read(s.a, how), read(s.b, how);
+            }
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                if (here[i] != no) read_later_[at].push_back({i, here[i] == decides});
             }
         }
     }
@@ -797,7 +880,15 @@ private:
     std::vector<Range> ranges_{};
     double part_ = 0;
     std::uint64_t seen_ = 0;
-    int forks_ = 0;
+    struct Branch {
+        std::size_t at = 0;
+        Ranges ranges{};
+    };
+    static constexpr std::size_t few_branches = 4;  // these are cheaper to follow than to unite
+    static constexpr std::size_t never_opened = std::numeric_limits<std::size_t>::max();
+    std::vector<Branch> open_{};  ///< the first `count_` continue later, the earliest one at the step `next_`
+    std::size_t count_ = 0, next_ = never_opened;
+    std::vector<std::vector<Later>> read_later_{};  ///< for each step, see find_what_matters()
     bool fails_ = false;
 };
 

@@ -51,6 +51,18 @@ test("the greater of two saturated terms is not decided by their rounding again 
     end
 end)
 
+test("many conditions on the motion leave the conditions on time known", function()
+    local terms = {}
+    for i = 1, 12 do terms[i] = ("if theta > %g then M = M + %g * math.sin(%g * t) end"):format(0.1 * i - 0.55, 0.1 * i, 0.3 * i) end
+    local M = load("return function(t, theta) local M = 0 " .. table.concat(terms, " ") .. " return M + (t % 2 < 1 and 1 or -1) end")()
+    local sys, task = system { I = 1, k = 1, C = 0.1, Rd = 0.2 }, { theta0 = 1.2, t_end = 30, times = {} }
+    local run = sys:simulate(merged(task, { M = M }))
+    equal(run.gap, nil)
+    local square = excitation.square { amplitude = 1, period = 2 }
+    local whole = load("return function(t, theta) local M = 0 " .. table.concat(terms, " ") .. " return M end")()
+    near(run:at(30), sys:simulate(merged(task, { M = square + whole })):at(30), 1e-10)
+end)
+
 test("short visits beyond a condition are not missed", function()
     -- it turns just behind the threshold, for a very short time
     for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do
