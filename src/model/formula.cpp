@@ -449,6 +449,26 @@ std::pair<double, double> Formula::beyond(std::size_t at, double decision) const
     return ends;
 }
 
+namespace {
+
+/// Returns whether a condition of this step was crossed.
+bool is_crossed(const terms::Piece& piece, std::size_t at) {
+    return std::any_of(piece.conditions.begin(), piece.conditions.end(), [&](const auto& condition) {
+        return condition.step == at && condition.beyond == piece.decisions[at];
+    });
+}
+
+/// Returns whether the operands of this step are clearly beyond the piece.
+bool is_beyond(const terms::Piece& piece, std::size_t at, Op op, double a, double b) {
+    constexpr double clearly = 1e-9;
+    return std::any_of(piece.conditions.begin(), piece.conditions.end(), [&](const auto& condition) {
+        return condition.step == at &&
+               margin_of(op, a, b, piece.decisions[at], condition.beyond) < -clearly * (std::fabs(a) + std::fabs(b));
+    });
+}
+
+}  // namespace
+
 void Formula::decide(terms::Piece& piece, double t, const State& state, std::span<const double> states,
                      std::uint64_t again) {
     constexpr double whole_numbers = 0x1p53;
@@ -457,12 +477,16 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
     start(t, state, states);
     std::vector<std::uint64_t> of = sources();
     std::vector<std::uint64_t> jumps_with = of;  // sources that also pass through staircases
+    // Where a condition was just crossed, values jump, and later decisions about them are taken anew.
+    std::vector<char> jumps(of.size(), 0);
+    bool other_way = false;
     double* const r = registers_.data();
     for (std::size_t at = 0; steps_[at].op < Op::give;) {
         const Step& s = steps_[at];
         const double a = r[s.a], b = r[s.b];
         const std::uint64_t both = of[s.a] | of[s.b], all = jumps_with[s.a] | jumps_with[s.b];
         const bool compares = is_comparison(s.op);
+        bool jumped = (jumps[s.a] | jumps[s.b]) != 0;
         double result = 0;
         if (!compares && s.op != Op::jump && !operate(s.op, a, b, result)) break;
         if (both != 0 && (compares || is_fold(s.op))) {
@@ -470,7 +494,9 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
             // A value that has jumped by more than one step left its old piece.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
-            if ((all & again) == 0 && before == before && is_beside) decision = before;
+            const bool anew = jumped && is_beyond(piece, at, s.op, a, b);
+            if ((all & again) == 0 && before == before && is_beside && !anew) decision = before;
+            jumped = jumped || is_crossed(piece, at);
             if (std::fabs(decision) < whole_numbers) {
                 made.decisions[at] = decision;
                 const int conditions = conditions_of(s.op, decision);
@@ -481,6 +507,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             }
         }
         if (compares) {
+            other_way = other_way || jumped;
             const double decision = made.decisions[at];
             at = (decision == decision ? decision != 0 : holds(s.op, a, b)) ? s.yes : s.no;
         } else if (s.op == Op::jump) {
@@ -489,6 +516,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             r[s.to] = result;
             of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
             jumps_with[s.to] = all;
+            jumps[s.to] = jumped || other_way ? 1 : 0;
             ++at;
         }
     }

@@ -63,6 +63,25 @@ test("many conditions on the motion leave the conditions on time known", functio
     near(run:at(30), sys:simulate(merged(task, { M = square + whole })):at(30), 1e-10)
 end)
 
+test("a comparison is decided anew when its operands jump", function()
+    local function tanh(x) return 1 - 2 / (math.exp(2 * x) + 1) end
+    local function spring(theta) return 0.728 * tanh(math.max(-0.594 - 1.651 * theta, math.sin(2.696 * theta))) end
+    local function M(t, theta, velocity, s)
+        local first = math.floor((1.115 * velocity - 1.997 * s.z - 0.528) / 0.707) % 2 == 0 and -0.462 or math.sin(1.342 * t) + math.sin(0.352 * t)
+        local second = 1.604 * theta + 1.971 * velocity <= 0.015 and 0.013 - 0.351 * theta + 0.167 * velocity or -0.936
+        return 0.66 * math.max(first, second) + 0.873 * math.sin(1.997 * t)
+    end
+    local function ended(by)
+        local run = system { I = 1.481, k = 2.516, C = 0.279, spring = spring }:simulate {
+            M = M, states = { z = { start = 0.2, rate = function(t, theta, velocity, s) return -1.72 - 0.997 * s.z end } }, theta0 = 1.4587, velocity0 = 0.1783,
+            t_end = 15, integrator = by,
+        }
+        equal(run.status, "end")
+        return run:at(15)
+    end
+    near(ended(integrator.dopri5 { tolerance = 1e-11 }), ended(integrator.spectral {}), 1e-8)
+end)
+
 test("short visits beyond a condition are not missed", function()
     -- it turns just behind the threshold, for a very short time
     for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do
