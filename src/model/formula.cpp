@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include "model/bounds.hpp"
 
@@ -220,6 +221,7 @@ Formula::Formula(std::vector<Step> steps, std::vector<double> registers, bool mo
     time[0] = 1;
     of_motion_ = has_conditions_ && depends_on(sources(), decides);
     of_time_ = !excitations_.empty() || (has_conditions_ && depends_on(std::move(time), decides));
+    if (of_motion_) find_levels();
 }
 
 void Formula::start(double t, const State& state, std::span<const double> states) {
@@ -309,24 +311,26 @@ int conditions_of(Op op, double decision) {
     return is_comparison(op) ? (op == Op::equal && decision == 0 ? 0 : 1) : op == Op::abs ? 1 : 2;
 }
 
-/// The distances to the ends of the piece; an equality ends as soon as the two differ.
-std::pair<double, double> margins_of(Op op, double a, double b, double decision) {
+/// The distance to the end of the piece behind which the decision is `beyond`; an equality ends as soon as the two
+/// differ.
+double margin_of(Op op, double a, double b, double decision, double beyond) {
+    const bool below = beyond < decision;
     switch (op) {
         case Op::less:
         case Op::less_equal:
-            return {decision != 0 ? b - a : a - b, never};
+            return decision != 0 ? b - a : a - b;
         case Op::equal:
-            return {-std::fabs(a - b), never};
+            return -std::fabs(a - b);
         case Op::abs:
-            return {decision * a, never};
+            return decision * a;
         case Op::floor:
-            return {a - decision, decision + 1 - a};
+            return below ? a - (beyond + 1) : beyond - a;
         case Op::ceil:
-            return {a - (decision - 1), decision - a};
+            return below ? a - beyond : beyond - 1 - a;
         case Op::fmod:
-            return {a / b - (decision > 0 ? decision : decision - 1), (decision < 0 ? decision : decision + 1) - a / b};
+            return below ? a / b - (decision > 0 ? decision : beyond) : (decision < 0 ? decision : beyond) - a / b;
         default:
-            return {a / b - decision, decision + 1 - a / b};
+            return below ? a / b - (beyond + 1) : beyond - a / b;
     }
 }
 
@@ -369,6 +373,102 @@ bool Formula::depends_on(std::vector<std::uint64_t> of, bool (*wanted)(Op op)) c
     return false;
 }
 
+/// Finds the levels of each staircase whose result is only compared with constants: the first whole numbers behind
+/// which a comparison changes. Between them a condition at each step would cut the motion without need.
+void Formula::find_levels() {
+    std::vector<char> is_constant(registers_.size(), 1);
+    is_constant[0] = 0;
+    if (motion_) is_constant[1] = is_constant[2] = 0;
+    std::fill_n(is_constant.begin() + static_cast<std::ptrdiff_t>(states_), state_count_, 0);
+    std::vector<std::size_t> stairs;
+    for (std::size_t at = 0; at < steps_.size(); ++at) {
+        const Step& s = steps_[at];
+        if (!is_comparison(s.op) && s.op < Op::jump) is_constant[s.to] = 0;
+        constexpr std::size_t most = 64;
+        if (is_staircase(s.op) && stairs.size() < most) stairs.push_back(at), levels_[at];
+    }
+    const auto each = [&](std::uint64_t of, const auto& call) {
+        for (std::size_t i = 0; i < stairs.size(); ++i) {
+            if ((of >> i & 1U) != 0) call(stairs[i]);
+        }
+    };
+    const auto use = [&](std::uint64_t of) { each(of, [&](std::size_t at) { levels_.erase(at); }); };
+    const auto compare = [&](std::uint64_t of, Op op, std::size_t with, bool left) {
+        if (!is_constant[with]) return use(of);
+        const double bits = registers_[with], level = op >= Op::less_whole ? static_cast<double>(to_whole(bits)) : bits;
+        const bool equals = op == Op::equal || op == Op::equal_whole;
+        const bool strict = op == Op::less || op == Op::less_whole;
+        each(of, [&](std::size_t at) {
+            const auto found = levels_.find(at);
+            if (found == levels_.end()) return;
+            if (equals || strict == left) found->second.push_back(std::ceil(level));
+            if (equals || strict != left) found->second.push_back(std::floor(level) + 1);
+        });
+    };
+    std::map<std::size_t, std::vector<std::uint64_t>> ways;  // the staircases that registers may hold at a step
+    ways[0].resize(registers_.size());
+    while (!ways.empty() && !levels_.empty()) {
+        const auto node = ways.extract(ways.begin());
+        std::vector<std::uint64_t> of = node.mapped();
+        const Step& s = steps_[node.key()];
+        const auto lead = [&](std::size_t to) {
+            std::vector<std::uint64_t>& there = ways.try_emplace(to, of).first->second;
+            for (std::size_t i = 0; i < of.size(); ++i) there[i] |= of[i];
+        };
+        if (is_comparison(s.op)) {
+            if (of[s.a] != 0) compare(of[s.a], s.op, s.b, true);
+            if (of[s.b] != 0) compare(of[s.b], s.op, s.a, false);
+            lead(s.yes), lead(s.no);
+        } else if (s.op == Op::jump) {
+            lead(s.yes);
+        } else {
+            const bool passes = s.op == Op::move || s.op == Op::to_float || s.op == Op::exact;
+            if (!passes) use(of[s.a] | of[s.b]);
+            if (s.op >= Op::give) continue;
+            const auto stair = std::find(stairs.begin(), stairs.end(), node.key());
+            of[s.to] = passes                  ? of[s.a]
+                       : stair == stairs.end() ? 0
+                                               : std::uint64_t{1} << static_cast<unsigned>(stair - stairs.begin());
+            lead(node.key() + 1);
+        }
+    }
+}
+
+/// The decisions on the other sides of the one or two conditions of a step.
+std::pair<double, double> Formula::beyond(std::size_t at, double decision) const {
+    const Op op = steps_[at].op;
+    if (is_comparison(op)) return {1 - decision, never};
+    if (op == Op::abs) return {-decision, never};
+    const auto found = levels_.find(at);
+    if (found == levels_.end()) return {decision - 1, decision + 1};
+    std::pair<double, double> ends{-never, never};
+    for (const double level : found->second) {
+        if (level <= decision) ends.first = std::max(ends.first, level - 1);
+        if (level > decision) ends.second = std::min(ends.second, level);
+    }
+    return ends;
+}
+
+namespace {
+
+/// Returns whether a condition of this step was crossed.
+bool is_crossed(const terms::Piece& piece, std::size_t at) {
+    return std::any_of(piece.conditions.begin(), piece.conditions.end(), [&](const auto& condition) {
+        return condition.step == at && condition.beyond == piece.decisions[at];
+    });
+}
+
+/// Returns whether the operands of this step are clearly beyond the piece.
+bool is_beyond(const terms::Piece& piece, std::size_t at, Op op, double a, double b) {
+    constexpr double clearly = 1e-9;
+    return std::any_of(piece.conditions.begin(), piece.conditions.end(), [&](const auto& condition) {
+        return condition.step == at &&
+               margin_of(op, a, b, piece.decisions[at], condition.beyond) < -clearly * (std::fabs(a) + std::fabs(b));
+    });
+}
+
+}  // namespace
+
 void Formula::decide(terms::Piece& piece, double t, const State& state, std::span<const double> states,
                      std::uint64_t again) {
     constexpr double whole_numbers = 0x1p53;
@@ -377,12 +477,16 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
     start(t, state, states);
     std::vector<std::uint64_t> of = sources();
     std::vector<std::uint64_t> jumps_with = of;  // sources that also pass through staircases
+    // Where a condition was just crossed, values jump, and later decisions about them are taken anew.
+    std::vector<char> jumps(of.size(), 0);
+    bool other_way = false;
     double* const r = registers_.data();
     for (std::size_t at = 0; steps_[at].op < Op::give;) {
         const Step& s = steps_[at];
         const double a = r[s.a], b = r[s.b];
         const std::uint64_t both = of[s.a] | of[s.b], all = jumps_with[s.a] | jumps_with[s.b];
         const bool compares = is_comparison(s.op);
+        bool jumped = (jumps[s.a] | jumps[s.b]) != 0;
         double result = 0;
         if (!compares && s.op != Op::jump && !operate(s.op, a, b, result)) break;
         if (both != 0 && (compares || is_fold(s.op))) {
@@ -390,17 +494,20 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             const double before = piece.decisions.empty() ? decision : piece.decisions[at];
             // A value that has jumped by more than one step left its old piece.
             const bool is_beside = s.op == Op::abs || std::fabs(decision - before) <= 1;
-            if ((all & again) == 0 && before == before && is_beside) decision = before;
+            const bool anew = jumped && is_beyond(piece, at, s.op, a, b);
+            if ((all & again) == 0 && before == before && is_beside && !anew) decision = before;
+            jumped = jumped || is_crossed(piece, at);
             if (std::fabs(decision) < whole_numbers) {
                 made.decisions[at] = decision;
                 const int conditions = conditions_of(s.op, decision);
-                const double below = compares ? 1 - decision : s.op == Op::abs ? -decision : decision - 1;
-                if (conditions > 0) made.conditions.push_back({at, below, all});
-                if (conditions > 1) made.conditions.push_back({at, decision + 1, all});
+                const auto [below, above] = beyond(at, decision);
+                if (conditions > 0 && std::isfinite(below)) made.conditions.push_back({at, below, all});
+                if (conditions > 1 && std::isfinite(above)) made.conditions.push_back({at, above, all});
                 if (!compares) result = result_on(s.op, a, b, decision);
             }
         }
         if (compares) {
+            other_way = other_way || jumped;
             const double decision = made.decisions[at];
             at = (decision == decision ? decision != 0 : holds(s.op, a, b)) ? s.yes : s.no;
         } else if (s.op == Op::jump) {
@@ -409,6 +516,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
             r[s.to] = result;
             of[s.to] = sources_of(s.op, of[s.a], of[s.b]);
             jumps_with[s.to] = all;
+            jumps[s.to] = jumped || other_way ? 1 : 0;
             ++at;
         }
     }
@@ -424,11 +532,11 @@ double Formula::value_on(const terms::Piece& piece, double t, const State& state
     return run(first, r, [&](const Step* s, double a, double b) -> const Step* {
         const double decision = piece.decisions[static_cast<std::size_t>(s - first)];
         if (decision != decision) return nullptr;
-        if (margins != nullptr) {
-            const auto [below, above] = margins_of(s->op, a, b, decision);
-            const int conditions = conditions_of(s->op, decision);
-            if (conditions > 0) margins->push_back(below);
-            if (conditions > 1) margins->push_back(above);
+        const auto is_of = [&](std::size_t c) {
+            return c < piece.conditions.size() && first + piece.conditions[c].step == s;
+        };
+        while (margins != nullptr && is_of(margins->size())) {
+            margins->push_back(margin_of(s->op, a, b, decision, piece.conditions[margins->size()].beyond));
         }
         if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
         r[s->to] = result_on(s->op, a, b, decision);
@@ -500,20 +608,21 @@ double rate_on(Op op, double da, double db, double decision) {
 
 namespace {
 
-/// The rate of the first margin of a step; that of the second, if there is one, is its opposite.
-double first_margin_rate(Op op, double a, double b, double da, double db, double decision) {
+/// The rate of the margin of a condition.
+double rate_of_margin(Op op, double a, double b, double da, double db, double decision, double beyond) {
+    const double sign = beyond < decision ? 1 : -1;
     switch (op) {
         case Op::less:
         case Op::less_equal:
         case Op::abs:
-            return margins_of(op, da, db, decision).first;  // linear
+            return margin_of(op, da, db, decision, beyond);  // linear
         case Op::floor:
         case Op::ceil:
-            return da;
+            return sign * da;
         case Op::equal:
             return failure;
         default:
-            return rate_of(Op::divide, a, b, da, db);
+            return sign * rate_of(Op::divide, a, b, da, db);
     }
 }
 
@@ -527,7 +636,7 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
     if (motion_) dot[1] = rate.theta, dot[2] = rate.velocity;
     std::copy(rates.begin(), rates.end(), dot.begin() + static_cast<std::ptrdiff_t>(states_));
     double found = failure;
-    std::size_t passed = 0;
+    const terms::Piece::Condition& wanted = piece.conditions[condition];
     const Step* const first = steps_.data();
     double* const r = registers_.data();
     run(first, r, [&](const Step* s, double a, double b) -> const Step* {
@@ -537,11 +646,7 @@ double Formula::margin_rate(const terms::Piece& piece, std::size_t condition, do
             if (!is_comparison(s->op) && s->op < Op::jump) dot[s->to] = rate_of(s->op, a, b, da, db);
             return nullptr;
         }
-        const auto conditions = static_cast<std::size_t>(conditions_of(s->op, decision));
-        if (passed <= condition && condition < passed + conditions) {
-            found = (condition > passed ? -1 : 1) * first_margin_rate(s->op, a, b, da, db, decision);
-        }
-        passed += conditions;
+        if (first + wanted.step == s) found = rate_of_margin(s->op, a, b, da, db, decision, wanted.beyond);
         if (is_comparison(s->op)) return first + (decision != 0 ? s->yes : s->no);
         r[s->to] = result_on(s->op, a, b, decision);
         dot[s->to] = rate_on(s->op, da, db, decision);
@@ -574,12 +679,11 @@ public:
     /// A hash of the branches taken; empty if they differ within the interval or cannot be determined.
     std::optional<std::uint64_t> over(double from, double to) {
         seen_ = 0xcbf29ce484222325U;
-        forks_ = 0;
         part_ = std::numeric_limits<double>::quiet_NaN();
         // The program writes each register before it reads it, so earlier values do no harm.
         const auto motion = std::pair(ranges_[1], ranges_[2]);
         ranges_[0] = {{from, to}};
-        const bool same = follow(0, ranges_);
+        const bool same = follow(ranges_);
         if (formula_.motion_) std::tie(ranges_[1], ranges_[2]) = motion;
         return same ? std::optional(seen_) : std::nullopt;
     }
@@ -595,34 +699,37 @@ private:
     }
     void note(std::uint64_t what) { seen_ = mixed(seen_, what); }
 
-    bool follow(std::size_t at, std::vector<Range>& r) {
-        for (;;) {
+    using Ranges = std::vector<Range>;
+
+    /// Follows all branches that conditions on the motion may take. Many of them are followed in the order of the
+    /// steps, so that they meet again and can be united.
+    bool follow(Ranges& r) {
+        count_ = 0;
+        for (std::size_t at = 0;;) {
             const Step& s = formula_.steps_[at];
             const Range a = r[s.a], b = r[s.b];
+            bool ends = false;
             if (is_comparison(s.op)) {
                 if (a.of_motion || b.of_motion) {
-                    constexpr int most_forks = 64;
-                    std::vector<Range> copy = r;
-                    if (++forks_ > most_forks || !follow(s.yes, copy)) return false;
+                    if (!open(s.yes, r)) return false;
                     at = s.no;
-                    continue;
+                } else {
+                    const auto found = decide(s.op, a, b);
+                    if (!found) return false;
+                    note(at + at + (*found ? 1 : 0));
+                    at = *found ? s.yes : s.no;
                 }
-                const auto found = decide(s.op, a, b);
-                if (!found) return false;
-                note(at + at + (*found ? 1 : 0));
-                at = *found ? s.yes : s.no;
-                continue;
-            }
-            if (s.op == Op::jump) {
+            } else if (s.op == Op::jump) {
                 at = s.yes;
             } else if (s.op >= Op::give) {
                 note(at);
                 if (s.op != Op::fail) note(a.piece);
-                return s.op == Op::fail || !a.folds;
+                if (s.op != Op::fail && a.folds) return false;
+                ends = true;
             } else {
                 fails_ = false;
                 Range result = of(s.op, a, b);
-                if (fails_) return note(at), true;
+                if (fails_) note(at), ends = true;
                 result.of_motion = a.of_motion || b.of_motion;
                 result.folds = result.folds || a.folds || b.folds;
                 // The index of the step is mixed in, or equal pieces of both operands would cancel.
@@ -633,6 +740,86 @@ private:
                 }
                 r[s.to] = result;
                 ++at;
+            }
+            if (ends && count_ == 0) return true;
+            if (!ends && (count_ <= few_branches || next_ > at)) continue;
+            if (!ends && !open(at, r)) return false;
+            at = next_;
+            resume(r);
+        }
+    }
+    /// Adds a branch that continues at a step. Returns false if there are too many.
+    bool open(std::size_t at, const Ranges& r) {
+        constexpr std::size_t most_branches = 64;
+        if (count_ > few_branches && read_later_.empty()) find_what_matters();
+        for (std::size_t k = 0; k < count_ && count_ > few_branches; ++k) {
+            if (open_[k].at == at && unite(open_[k].ranges, r, read_later_[at])) return true;
+        }
+        if (count_ == open_.size()) open_.emplace_back();
+        open_[count_].at = at, open_[count_].ranges = r;
+        next_ = count_ == 0 ? at : std::min(next_, at);
+        return ++count_ <= most_branches;
+    }
+    /// Continues the branch that is first; its storage is kept for later ones.
+    void resume(Ranges& r) {
+        std::size_t k = 0;
+        while (open_[k].at != next_) ++k;
+        std::swap(r, open_[k].ranges);
+        std::swap(open_[k], open_[--count_]);
+        next_ = never_opened;
+        for (std::size_t i = 0; i < count_; ++i) next_ = std::min(next_, open_[i].at);
+    }
+    /// A register whose value is read after a step.
+    struct Later {
+        std::size_t place;
+        bool decides;  ///< whether a decision depends on it
+    };
+    /// Unites a branch with another one that continues at the same step, unless a value that changes in time and that
+    /// later decisions depend on differs.
+    static bool unite(Ranges& one, const Ranges& other, const std::vector<Later>& later) {
+        const auto same = [&](std::size_t i) {
+            const Range &x = one[i], &y = other[i];
+            return bits(x.lo) == bits(y.lo) && bits(x.hi) == bits(y.hi) && x.of_motion == y.of_motion &&
+                   x.folds == y.folds && x.piece == y.piece;
+        };
+        const auto changes = [](const Range& x) { return !x.of_motion && !x.is_one(); };
+        for (const auto& [i, decides] : later) {
+            if (decides && (changes(one[i]) || changes(other[i])) && !same(i)) return false;
+        }
+        for (const auto& [i, decides] : later) {
+            if (same(i)) continue;
+            const Range &x = one[i], &y = other[i];
+            one[i] = {{}, true, x.folds || y.folds, mixed(mixed(i + 1, x.piece), y.piece)};
+        }
+        return true;
+    }
+    /// Finds the registers that are read from each step on.
+    void find_what_matters() {
+        const std::vector<Step>& steps = formula_.steps_;
+        read_later_.resize(steps.size());
+        enum : char { no, yes, decides };
+        std::vector<std::vector<char>> at_step(steps.size(), std::vector<char>(ranges_.size(), no));
+        for (std::size_t at = steps.size(); at-- > 0;) {
+            const Step& s = steps[at];
+            std::vector<char>& here = at_step[at];
+            const auto read = [&](std::size_t place, char how) { here[place] = std::max(here[place], how); };
+            if (s.op >= Op::give) {
+                read(s.a, yes);
+            } else if (s.op == Op::jump) {
+                here = at_step[s.yes];
+            } else {
+                here = at_step[is_comparison(s.op) ? s.yes : at + 1];
+                // An operation on whole numbers may fail, which decides as well.
+                char how = is_comparison(s.op) || is_fold(s.op) || s.op >= Op::native ? decides : no;
+                if (is_comparison(s.op)) {
+                    for (std::size_t i = 0; i < here.size(); ++i) read(i, at_step[s.no][i]);
+                } else {
+                    how = std::max(how, std::exchange(here[s.to], char{no}));
+                }
+                read(s.a, how), read(s.b, how);
+            }
+            for (std::size_t i = 0; i < here.size(); ++i) {
+                if (here[i] != no) read_later_[at].push_back({i, here[i] == decides});
             }
         }
     }
@@ -721,7 +908,15 @@ private:
     std::vector<Range> ranges_{};
     double part_ = 0;
     std::uint64_t seen_ = 0;
-    int forks_ = 0;
+    struct Branch {
+        std::size_t at = 0;
+        Ranges ranges{};
+    };
+    static constexpr std::size_t few_branches = 4;  // these are cheaper to follow than to unite
+    static constexpr std::size_t never_opened = std::numeric_limits<std::size_t>::max();
+    std::vector<Branch> open_{};  ///< the first `count_` continue later, the earliest one at the step `next_`
+    std::size_t count_ = 0, next_ = never_opened;
+    std::vector<std::vector<Later>> read_later_{};  ///< for each step, see find_what_matters()
     bool fails_ = false;
 };
 

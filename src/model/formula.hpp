@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "model/excitation.hpp"
@@ -172,6 +173,8 @@ private:
     double search(double t, Breaks which);
     std::vector<std::uint64_t> sources() const;
     bool depends_on(std::vector<std::uint64_t> of, bool (*wanted)(Op op)) const;
+    void find_levels();
+    std::pair<double, double> beyond(std::size_t at, double decision) const;
     void start(double t, const State& state, std::span<const double> states);
     bool is_dubious(double t, double found);
     bool is_of_excitation(double found) const;
@@ -182,6 +185,7 @@ private:
     bool motion_;
     std::size_t states_, state_count_;
     bool timeless_, has_conditions_, of_motion_ = false, of_time_ = false, gave_up_ = false;
+    std::map<std::size_t, std::vector<double>> levels_;  ///< of some steps, see find_levels()
     std::array<std::map<double, double>, 2> known_;  ///< from a time to the next break, for Breaks::own and Breaks::all
     int unfinished_ = 0;                             ///< searches that hit their limit without finding a break
     double span_ = 1, greatest_ = 0;                 ///< time span of interest; the greatest |value| at sample times

@@ -12,6 +12,76 @@ test("an encoder acts as a spring in steps, whose energy is conserved", function
     for t = 1, 10 do near(energy(run:at(t)), energy(theta0, 0), 1e-12) end
 end)
 
+test("a staircase that is only compared with constants changes at these levels alone", function()
+    local p, w = 0.1, 1e-7
+    local function ended(M) return system { I = 1, k = 1, C = 0.1, Rd = 0.2 }:simulate { M = M, theta0 = 1.2, t_end = 30, times = {} } end
+    local expected = ended(function(t, theta) return (theta >= p and theta < p + w and 5e4 or 0) + 2 * math.sin(0.7 * t) end)
+    for name, M in pairs {
+        floor = function(t, theta) return (math.floor((theta - p) / w) == 0 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        divided = function(t, theta) return ((theta - p) // w == 0 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        ceil = function(t, theta) return (math.ceil((theta - p) / w) == 1 and 5e4 or 0) + 2 * math.sin(0.7 * t) end,
+        between = function(t, theta)
+            local n = math.floor((theta - p) / w)
+            return (n > -1 and n < 0.5 and 5e4 or 0) + 2 * math.sin(0.7 * t)
+        end,
+        branches = function(t, theta)
+            local n = math.floor((theta - p) / w)
+            local first = t % 3 < 1.5
+            return ((first and n == 0 or not first and 0 <= n and not (n >= 1)) and 5e4 or 0) + 2 * math.sin(0.7 * t)
+        end,
+    } do
+        local run = ended(M)
+        near(run:at(30), expected:at(30), 1e-10)
+        equal(run.gap, nil, name)
+    end
+end)
+
+test("the greater of two saturated terms is not decided by their rounding again and again", function()
+    local function tanh(x) return (math.exp(x) - math.exp(-x)) / (math.exp(x) + math.exp(-x)) end
+    local function go(greater)
+        return system { I = 1, k = 1, C = 0.1 }:simulate {
+            M = function(t, theta, velocity, s) return greater(tanh(-9.94 * theta - 24.27 * velocity - 3 * s.z - 1.3), tanh(-14.61 * theta + 16.82 * velocity - 6.6 * s.z - 1.3)) + math.sin(t) end,
+            states = { z = { start = 0.3, rate = function(t, theta, velocity, s) return theta - s.z end } }, theta0 = 2, t_end = 30,
+        }
+    end
+    for name, greater in pairs { min = math.min, max = math.max } do
+        local run = go(greater)
+        equal(run.status, "end", name)
+        near(run:at(30), go(function(a, b) return (a + b + (name == "min" and -1 or 1) * ((a - b) ^ 2) ^ 0.5) / 2 end):at(30), 1e-8)
+    end
+end)
+
+test("many conditions on the motion leave the conditions on time known", function()
+    local terms = {}
+    for i = 1, 12 do terms[i] = ("if theta > %g then M = M + %g * math.sin(%g * t) end"):format(0.1 * i - 0.55, 0.1 * i, 0.3 * i) end
+    local M = load("return function(t, theta) local M = 0 " .. table.concat(terms, " ") .. " return M + (t % 2 < 1 and 1 or -1) end")()
+    local sys, task = system { I = 1, k = 1, C = 0.1, Rd = 0.2 }, { theta0 = 1.2, t_end = 30, times = {} }
+    local run = sys:simulate(merged(task, { M = M }))
+    equal(run.gap, nil)
+    local square = excitation.square { amplitude = 1, period = 2 }
+    local whole = load("return function(t, theta) local M = 0 " .. table.concat(terms, " ") .. " return M end")()
+    near(run:at(30), sys:simulate(merged(task, { M = square + whole })):at(30), 1e-10)
+end)
+
+test("a comparison is decided anew when its operands jump", function()
+    local function tanh(x) return 1 - 2 / (math.exp(2 * x) + 1) end
+    local function spring(theta) return 0.728 * tanh(math.max(-0.594 - 1.651 * theta, math.sin(2.696 * theta))) end
+    local function M(t, theta, velocity, s)
+        local first = math.floor((1.115 * velocity - 1.997 * s.z - 0.528) / 0.707) % 2 == 0 and -0.462 or math.sin(1.342 * t) + math.sin(0.352 * t)
+        local second = 1.604 * theta + 1.971 * velocity <= 0.015 and 0.013 - 0.351 * theta + 0.167 * velocity or -0.936
+        return 0.66 * math.max(first, second) + 0.873 * math.sin(1.997 * t)
+    end
+    local function ended(by)
+        local run = system { I = 1.481, k = 2.516, C = 0.279, spring = spring }:simulate {
+            M = M, states = { z = { start = 0.2, rate = function(t, theta, velocity, s) return -1.72 - 0.997 * s.z end } }, theta0 = 1.4587, velocity0 = 0.1783,
+            t_end = 15, integrator = by,
+        }
+        equal(run.status, "end")
+        return run:at(15)
+    end
+    near(ended(integrator.dopri5 { tolerance = 1e-11 }), ended(integrator.spectral {}), 1e-8)
+end)
+
 test("short visits beyond a condition are not missed", function()
     -- it turns just behind the threshold, for a very short time
     for _, beyond in ipairs { 1e-2, 1e-4, 1e-6 } do

@@ -34,6 +34,16 @@ test("bodies have the modes of their matrices, also through gears", function()
     near(held:modes()[1].im, 2, 1e-14)
 end)
 
+test("dry friction and the jump of a spring or a load hold a mass together", function()
+    local function step(theta) return theta > 0 and 1 or -1 end
+    equal(#system { I = 1, k = 1, Rd = 0.2, spring = step }:modes { M = 1.1 }, 0)
+    equal(#system { I = 1, k = 1, Rd = 0.2 }:modes { M = function(t, theta) return -step(theta) end }, 0)
+    local held = system { bodies = { a = { I = 1, k = 1, Rd = 0.2, spring = step }, b = { I = 1, k = 2 } }, links = { rod = { "a", "b", k = 1 } } }
+    near(held:modes()[1].im, 3 ^ 0.5, 1e-13)
+    raises(function() system { I = 1, k = 1, Rd = 0.2, spring = step }:modes { M = 1.3 } end, "there is no rest")
+    raises(function() system { I = 1, k = 1, Rd = 0.2, spring = function(theta) return -step(theta) end }:modes() end, "there is no rest")
+end)
+
 test("friction that falls with the speed drives a mass on a belt", function()
     local law = { Rd = 0.3, Re = 0.6, speed = 0.1 }
     local sys = system { I = 1, k = 4, C = 0.2, friction = friction.stribeck(law) }

@@ -175,4 +175,17 @@ test("a joint with weights leaves a wall once", function()
     end
 end)
 
+test("in a chain several contacts reach their limits at one instant", function()
+    for N = 5, 8 do
+        local bodies, links, M = {}, {}, {}
+        for i = 1, N do
+            bodies["b" .. i] = { I = 1, Rd = 0.5, k = 0 }
+            M["b" .. i] = function(t) return (i % 2 == 0 and -0.5 or 1.5) * math.sin(t) end
+            if i > 1 then links["l" .. i - 1] = { "b" .. i - 1, "b" .. i, Rd = 0.5, k = 0 } end
+        end
+        local run = runs({ bodies = bodies, links = links }, { M = M, t_end = 20 })
+        if N % 2 == 1 then near(run.b1.theta, run["b" .. N].theta, 1e-6) end
+    end
+end)
+
 finish()

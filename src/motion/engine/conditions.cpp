@@ -291,10 +291,11 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool several = ending.conditions.size() > 1;
         const bool soon_again = (several || last_.function == function) && here.t - last_.t <= soon * unit_;
-        const bool back = soon_again && last_.step == step && last_.from == beyond;
+        const bool rises = beyond > function->decision(step);
+        const bool back = soon_again && last_.step == step && last_.rises != rises;
         const double earlier = last_.t < here.t ? last_.t : last_.earlier, since = here.t - earlier;
         chatter.crossed(back);
-        last_ = {function, step, function->decision(step), here.t, within_, earlier, of};
+        last_ = {function, step, rises, here.t, within_, earlier, of};
         const double before = function->value(here);
         function->cross(condition);
         const double jump = std::fabs(function->value(here) - before);

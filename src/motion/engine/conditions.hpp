@@ -105,10 +105,11 @@ private:
     struct {
         const Piecewise* function = nullptr;
         std::size_t step = 0;
-        double from = 0, t = -model::never;  ///< the decision before, and the time at which it changed
-        double within = 0;                   ///< greatest |margin| that counted as zero
-        double earlier = -model::never;      ///< time of the previous crossing that was not at t
-        std::uint64_t of = 0;                ///< the arguments on which the condition depends, a bit each
+        bool rises = false;              ///< whether the decision became greater
+        double t = -model::never;        ///< the time at which it changed
+        double within = 0;               ///< greatest |margin| that counted as zero
+        double earlier = -model::never;  ///< time of the previous crossing that was not at t
+        std::uint64_t of = 0;            ///< the arguments on which the condition depends, a bit each
     } last_;
     double within_ = 0;       ///< the same for the conditions about to be crossed
     int small_in_a_row_ = 0;  ///< number of successive small jumps

@@ -25,9 +25,9 @@ struct Contacts {
         bool leaves_wall = false;  ///< whether it begins at a wall and leaves it
         bool leaned = false;       ///< whether it stopped at a wall and that was reported
     };
-    std::vector<Of> of;         ///< one for each joint
-    double size_at_stop = 0;    ///< magnitude of the torques when a joint last reached slip 0
-    std::size_t last_full = 0;  ///< joint of a loop that reached its limit last
+    std::vector<Of> of;                    ///< one for each joint
+    double size_at_stop = 0;               ///< magnitude of the torques when a joint last reached slip 0
+    std::vector<std::size_t> last_full{};  ///< joints of loops that reached their limits last, at one instant
     double last_full_at = -model::never;
 
     /// Makes a joint slide in direction `way` from now on.

@@ -96,7 +96,7 @@ private:
     std::vector<Asked>& asked_;
     Balance& found_;
     const Frame* projected_ = nullptr;  ///< the frame to which velocities were projected last
-    std::size_t full_ = 0;              ///< joint of a loop that has reached its limit
+    std::vector<std::size_t> full_{};   ///< joints that have reached their limits at this instant
     bool found_at_stop_ = false;        ///< whether found_ is the balance at the stop of the only joint, which sticks
     double between_ = 0;                ///< rounding of the released joint's torque between two doubles of the time
 };
@@ -113,8 +113,11 @@ bool Decider::decide() {
     const bool loops = !all_hold.closing.empty();
     // At one instant several joints of a loop reach their limits or fail to leave: torques can no longer be shared.
     const bool all_used = loops && memory().last_full_at == now().t.hi;
-    if (loops && released_) memory().last_full_at = now().t.hi, memory().last_full = released_->joint;
-    full_ = released_ ? released_->joint : all_used ? memory().last_full : joints();
+    if (released_ || all_used) {
+        full_ = all_used ? memory().last_full : std::vector<std::size_t>{};
+        if (released_) full_.push_back(released_->joint);
+        if (loops) memory().last_full_at = now().t.hi, memory().last_full = full_;
+    }
     if (loops && !all_used && !share_loops()) return false;
     for (std::size_t j = 0; j < joints() && told_; ++j) {
         if (asked_[j].before.slid != Motion::stuck) settle_at_limit(j);
@@ -467,7 +470,7 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
 }
 
 /// Decides all joints at slip 0 at once, if deciding one after another cycles. Sliding joints then have the sliding
-/// instead of the holding torque, and the problem is solved again. The limit of a released joint is lowered slightly.
+/// instead of the holding torque, and the problem is solved again. The limits of released joints are lowered slightly.
 bool Decider::decide_together() {
     mode().friction = by_.room.entered;
     for (std::size_t j = 0; j < joints(); ++j) mode().leans[j] = asked_[j].leant;
@@ -477,11 +480,12 @@ bool Decider::decide_together() {
     }
     Box box;
     if (!box_of(held, box)) return false;
-    for (std::size_t k = 0; k < held.size(); ++k) {
-        if (held[k] != full_) continue;
-        const double room = little_more * size(full_);
-        box.low(static_cast<Eigen::Index>(k)) += room, box.high(static_cast<Eigen::Index>(k)) -= room;
+    Eigen::VectorXd room = Eigen::VectorXd::Zero(box.low.size());
+    for (Eigen::Index c = 0; c < room.size(); ++c) {
+        const std::size_t j = held[static_cast<std::size_t>(c)];
+        if (std::find(full_.begin(), full_.end(), j) != full_.end()) room(c) = little_more * size(j);
     }
+    box.low += room, box.high -= room;
     std::vector<char> slips(held.size(), 0);
     Eigen::VectorXd torque, rate;
     for (bool grown = true; grown;) {
@@ -495,10 +499,10 @@ bool Decider::decide_together() {
             if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * size(j))) continue;  // other joints hold it as well
             slips[k] = 1, grown = true;
             const Moment here = now().here();
-            if (mode().leans[j] <= 0) box.low(c) = -mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
+            if (mode().leans[j] <= 0) box.low(c) = room(c) - mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
             const bool one_way = joint_at(j).friction.law.is_one_way();
             if (mode().leans[j] >= 0 && !one_way)
-                box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here);
+                box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here) - room(c);
         }
     }
     std::vector<std::size_t> gone;

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <optional>
 
 #include "algebra/decompositions.hpp"
+#include "motion/engine/balance.hpp"
 #include "motion/engine/mechanics.hpp"
 #include "motion/engine/moving.hpp"
 
@@ -234,16 +236,31 @@ private:
         }
         return slopes;
     }
-    /// Checks that the holding joints can hold.
-    [[nodiscard]] std::optional<text::Error> holds() {
+    /// The torques of holding joints, with the bodies at these angles.
+    [[nodiscard]] std::vector<double> held_at(std::vector<double> y) {
+        std::swap(y_, y);
         static_cast<void>(at(Eigen::VectorXd::Zero(2 * groups() + states())));
+        std::swap(y_, y);
         std::vector<double> lacking(bodies()), held(mechanics_.joints());
         for (std::size_t i = 0; i < bodies(); ++i) lacking[i] = -torques_[i];
         frame_->multipliers(lacking, held);
+        return held;
+    }
+    /// Checks that the holding joints can hold.
+    [[nodiscard]] std::optional<text::Error> holds() {
+        std::vector<double> held = held_at(y_);
         for (std::size_t j = 0; j < held.size(); ++j) {
             if (!mode_.holds(j) || mode_.rigid[j] != 0) continue;
             const double limit = mechanics_.holding(j, held[j] < 0 ? Motion::forward : Motion::backward, here(y_));
             if (std::fabs(held[j]) <= limit * (1 + 1e-9)) continue;
+            // A load or spring that jumps here and drives the joint back may hold it with any value in between.
+            std::array<double, 2> beside{};
+            for (const Motion side : {Motion::backward, Motion::forward}) {
+                std::vector<double> y;
+                static_cast<void>(just_beside(mechanics_, here(y_), j, {side, Motion::stuck}, y));
+                beside[side == Motion::forward ? 1 : 0] = held_at(y)[j];
+            }
+            if (beside[0] < beside[1] && beside[0] <= limit && beside[1] >= -limit) continue;
             const std::string& name = given_.system.joints[j].name;
             return text::Error{
                 fmt::format("there is no rest: the friction{} would have to hold {:.6g}, but holds {:.6g}",

@@ -277,6 +277,7 @@ Ending Engine::watch(const Frame& frame) {
 /// pull.
 void Engine::hold_again(std::size_t joint, double torques) {
     recorder_->tell_no_slip(joint, now_.t.hi);
+    std::erase(contacts_.last_full, joint);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
     if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);

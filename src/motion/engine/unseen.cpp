@@ -76,10 +76,10 @@ bool Unseen::is_told(double allowed, double part) {
 }
 
 /// Returns the rounding error, since discs without radius grow only by the roundings of each step.
-double Unseen::rounded() {
+double Unseen::rounded(std::optional<std::size_t> condition) {
     walk_.begin(*formula_, piece_, false);
     for (const Input& input : inputs_) walk_.set(input.place, {cheb::value(input.series, 0), 0}, Interval{});
-    return walk_.run().disc.r / model::bounds::roundings_of_a_step;
+    return walk_.run(condition).disc.r / model::bounds::roundings_of_a_step;
 }
 
 double Unseen::value(double x) {
@@ -271,8 +271,15 @@ void StretchProof::look(double size, double allowed, double part) {
     for (std::size_t k = 0; piece != nullptr && k < piece->conditions.size() && good(); ++k) {
         const std::size_t step = piece->conditions[k].step;
         if (std::exchange(last, step) == step) continue;
-        const auto close = [&](const Series& series) { return of_last_iteration * cheb::size(series) + smallest; };
-        if (found(unseen_.search(step, budget_, close))) return;
+        double noise = smallest;
+        const auto close = [&](const Series& series) { return of_last_iteration * cheb::size(series) + noise; };
+        Unseen::Found what = unseen_.search(step, budget_, close);
+        if (what.place) {  // the compared values may differ by their rounding only
+            const double of_operands = few_roundings * unseen_.rounded(step);
+            if (std::isfinite(of_operands)) noise += of_operands;
+            what = unseen_.search(step, budget_, close);
+        }
+        if (found(what)) return;
     }
     (void)found(unseen_.search({}, budget_, [&](const Series& series) {
         return std::max(allowed, part * cheb::size(series)) + clearly * lost_in_time(series, late_, s_.h, size);

@@ -40,8 +40,9 @@ public:
         return search(allowed(series_), budget);
     }
     [[nodiscard]] const model::terms::Piece* piece() const { return piece_; }
-    /// The error of the function in the middle of the stretch due to rounding in its steps; not finite if unknown.
-    [[nodiscard]] double rounded();
+    /// The error of the function, or of the quantity that decides a condition, in the middle of the stretch due to
+    /// rounding in its steps; not finite if unknown.
+    [[nodiscard]] double rounded(std::optional<std::size_t> condition = {});
 
 private:
     struct Input {
