@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "help/help_text.hpp"
-#include "help/lua_words.hpp"
 #include "help/signature.hpp"
 #include "lua/tokens.hpp"
 #include "text/characters.hpp"

@@ -18,7 +18,6 @@
 #include "prompt/call.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
-#include "prompt/printer.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
 

@@ -29,7 +29,6 @@
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"
 #include "text/characters.hpp"
-#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::prompt {

@@ -10,7 +10,7 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
-#include "theory/den_hartog.hpp"
+#include "theory/forced.hpp"
 
 namespace dinal::steady_test {
 
