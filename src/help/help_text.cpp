@@ -1,17 +1,16 @@
 #include "help/help_text.hpp"
 
-#include <fmt/core.h>
 #include <fmt/format.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
 
 #include "help/library.hpp"
-#include "help/signature.hpp"
 #include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
-#include "lua/tokens.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"

@@ -1,6 +1,7 @@
 #include "plots/run_figure.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 

@@ -24,7 +24,7 @@
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
 #include "lua/limits.hpp"
-#include "lua/tokens.hpp"
+#include "lua/lua_text.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"

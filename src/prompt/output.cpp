@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-#include "help/signature.hpp"
+#include "help/library.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/limits.hpp"

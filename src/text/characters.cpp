@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <utf8proc.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <initializer_list>
