@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "analysis/accurate_sum.hpp"
-#include "analysis/stretches.hpp"
+#include "analysis/recurrence.hpp"
 #include "model/lowered.hpp"
 
 namespace dinal::analysis {

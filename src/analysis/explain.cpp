@@ -15,7 +15,7 @@
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/part.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::analysis {
 namespace {

@@ -14,7 +14,6 @@
 #include "analysis/fit_starts.hpp"
 #include "analysis/least_squares.hpp"
 #include "analysis/misfit.hpp"
-#include "analysis/missing_torques.hpp"
 #include "analysis/noise_memory.hpp"
 #include "motion/integrators.hpp"
 #include "theory/theory_free.hpp"

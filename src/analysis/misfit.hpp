@@ -1,23 +1,64 @@
 // Detects a wrong model by patterns in the residual of a fit that depend on theta, on velocity or on time.
 //
-// To first order the residual is then a sum of the responses to missing torques (missing_torques.hpp), or of slow
+// To first order the residual is then a sum of the responses to torques that the model may lack, or of slow
 // functions of time if the zero drifts. Each of these terms is tried as a regressor besides the derivatives with
 // respect to the fitted parameters (the score test of Lagrange multipliers), so that effects which the parameters can
 // imitate do not count. A term that is possible but not certain is a nuisance: the errors include the shift it would
 // cause. Correlated noise is not a misfit: residual and regressors are filtered until the residual is white, and slow
 // functions are compared with slightly faster ones.
+//
+// For one body with a linear spring and Coulomb friction, a response obeys a linear equation between events; at a turn,
+// stop or start it jumps like the velocity there. So it is computed without a run. For every other system it is the
+// difference of two runs.
 #pragma once
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "analysis/noise_memory.hpp"
+#include "model/excitation.hpp"
+#include "motion/run.hpp"
 
 namespace dinal::analysis {
+
+/// The numbers of unit torques that depend on velocity and on theta; they are stored in this order.
+inline constexpr Eigen::Index velocity_torques = 5, theta_torques = 3;
+/// The first of those velocity torques that are friction which falls with the speed.
+inline constexpr Eigen::Index first_falling = 2;
+/// The first of those theta torques that a linear spring does not have.
+inline constexpr Eigen::Index first_bent = 1;
+
+class MissingTorques {
+public:
+    using Row = Eigen::Matrix<double, 1, velocity_torques + theta_torques>;
+
+    /// Scales the torques by the greatest angle and velocity of this motion.
+    MissingTorques(std::span<const double> theta, std::span<const double> velocity);
+    /// `way` is the sign of the velocity, at a turn that before or after it, and 0 for a mass at rest.
+    Row at(double theta, double velocity, double way) const;
+    /// One row for each state.
+    Eigen::MatrixXd along(std::span<const double> theta, std::span<const double> velocity) const;
+
+private:
+    double far_, fast_;
+};
+
+/// The changes of the run's angles caused by each of the torques, one column for each. Requires a linear spring,
+/// Coulomb friction, an M without feedback, and a row of the run at each of these times.
+Eigen::MatrixXd responses(const model::Oscillator& system, const model::Excitation& M, const motion::Run& run,
+                          std::span<const double> times);
+
+/// A prediction with this torque added to M; empty if it cannot be evaluated.
+using Pushed = std::function<std::optional<Eigen::VectorXd>(const model::Excitation& added)>;
+/// The changes of the prediction caused by each of these torques, by differences of about the noise; `whole` is a large
+/// torque.
+std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
+                                         const Eigen::MatrixXd& torques, double whole, double noise);
 
 enum class Follows { velocity, theta, time };
 inline constexpr std::array<std::string_view, 3> follows_names{"velocity", "theta", "time"};

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "analysis/map.hpp"
+#include "analysis/recurrence.hpp"
 #include "analysis/steady.hpp"
-#include "analysis/stretches.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"

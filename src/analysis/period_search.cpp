@@ -6,8 +6,7 @@
 #include <numbers>
 
 #include "analysis/forced_search.hpp"
-#include "analysis/short_slides.hpp"
-#include "analysis/sine_start.hpp"
+#include "analysis/single_sine.hpp"
 #include "analysis/steady_facts.hpp"
 
 namespace dinal::analysis {

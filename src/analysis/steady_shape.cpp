@@ -5,13 +5,13 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/short_slides.hpp"
+#include "analysis/recurrence.hpp"
+#include "analysis/single_sine.hpp"
 #include "analysis/steady.hpp"
-#include "analysis/stretches.hpp"
 #include "model/controller.hpp"
 #include "model/lowered.hpp"
 #include "motion/integrators.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::analysis {
 namespace {

@@ -18,7 +18,6 @@
 #include "api/data.hpp"
 #include "api/picture.hpp"
 #include "files/csv.hpp"
-#include "files/table.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
@@ -29,7 +28,6 @@
 #include "plots/shades.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
-#include "text/harmless.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

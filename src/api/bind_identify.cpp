@@ -12,11 +12,10 @@
 #include <string>
 #include <tuple>
 
+#include "analysis/fit_starts.hpp"
 #include "analysis/general_fit.hpp"
 #include "analysis/identification.hpp"
 #include "analysis/misfit.hpp"
-#include "analysis/missing_torques.hpp"
-#include "analysis/turning_points.hpp"
 #include "api/bind_excitation.hpp"
 #include "api/bodies.hpp"
 #include "api/classes.hpp"
@@ -38,8 +37,8 @@
 #include "model/springs/polynomial_spring.hpp"
 #include "model/system.hpp"
 #include "text/option.hpp"
-#include "text/sentences.hpp"
 #include "text/suggest.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 

@@ -16,7 +16,6 @@
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/options.hpp"
-#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

@@ -21,12 +21,10 @@
 #include "lua/worker_state.hpp"
 #include "model/controller.hpp"
 #include "plots/figure.hpp"
-#include "plots/neighbours.hpp"
 #include "plots/painter.hpp"
 #include "plots/run_figure.hpp"
 #include "plots/svg_words.hpp"
 #include "terminal/display.hpp"
-#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api {

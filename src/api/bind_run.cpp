@@ -29,7 +29,6 @@
 #include "api/steady_answer.hpp"
 #include "files/csv.hpp"
 #include "files/record1989.hpp"
-#include "files/table.hpp"
 #include "lua/bind.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
@@ -45,7 +44,6 @@
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/option.hpp"
-#include "text/sentences.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"
 

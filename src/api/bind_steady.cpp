@@ -16,7 +16,7 @@
 #include "model/controller.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 

@@ -23,8 +23,7 @@
 #include "model/oscillator.hpp"
 #include "motion/rk4/rk4.hpp"
 #include "text/option.hpp"
-#include "theory/den_hartog.hpp"
-#include "theory/theory_forced.hpp"
+#include "theory/forced.hpp"
 #include "theory/theory_free.hpp"
 
 namespace dinal::api {

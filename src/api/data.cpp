@@ -10,8 +10,7 @@
 #include "lua/memory_limit.hpp"
 #include "motion/columns.hpp"
 #include "text/characters.hpp"
-#include "text/harmless.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 namespace {

@@ -16,9 +16,8 @@
 #include "api/data.hpp"
 #include "api/steady_answer.hpp"
 #include "model/lowered.hpp"
-#include "text/sentences.hpp"
-#include "theory/den_hartog.hpp"
-#include "theory/theory_forced.hpp"
+#include "text/words.hpp"
+#include "theory/forced.hpp"
 
 namespace dinal::api {
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
-#include "lua/tokens.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"
 

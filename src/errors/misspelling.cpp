@@ -11,8 +11,6 @@
 #include "errors/habits.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
-#include "lua/tokens.hpp"
-#include "text/sentences.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"
 

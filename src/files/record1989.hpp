@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "files/csv.hpp"
 #include "files/file.hpp"
-#include "files/table.hpp"
 #include "model/oscillator.hpp"
 #include "motion/run.hpp"
 #include "text/expected.hpp"

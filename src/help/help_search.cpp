@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "help/help_text.hpp"
-#include "help/lua_words.hpp"
-#include "help/signature.hpp"
-#include "lua/tokens.hpp"
+#include "help/library.hpp"
+#include "lua/lua_text.hpp"
 #include "text/characters.hpp"
 #include "text/suggest.hpp"
 #include "text/words.hpp"

@@ -1,6 +1,7 @@
-// The function help() and its texts: entries, searches, the list of everything.
+// The function help() and its texts: entries, searches, the list of everything, words of Lua, the tour.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -48,5 +49,16 @@ void register_help(lua_State* L);
 /// docs/manual/TOPIC.md, with entries without options listed in one line each. "all" has every entry as help() prints
 /// it, with its example, for the tests. Fails if there is no such page.
 text::Expected<std::string> manual(std::string_view page = "");
+
+std::size_t tour_pages();
+
+/// Page 1, 2, ... Lines to be typed begin with four blanks and "> ".
+std::string tour_page(std::size_t page);
+
+/// An explanation and lines that run; empty if Lua has no such word.
+std::string lua_word(std::string_view word);
+
+/// All such words, including "math.cos" etc.
+std::vector<std::string_view> lua_words();
 
 }  // namespace dinal::help

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "help/help_text.hpp"
-#include "help/signature.hpp"
+#include "help/library.hpp"
 #include "text/version.hpp"
 #include "text/words.hpp"
 

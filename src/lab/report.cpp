@@ -22,8 +22,7 @@
 #include "lua/worker_state.hpp"
 #include "plots/svg_words.hpp"
 #include "source/value_text.hpp"
-#include "text/harmless.hpp"
-#include "text/sentences.hpp"
+#include "text/characters.hpp"
 #include "text/words.hpp"
 
 namespace dinal::lab {

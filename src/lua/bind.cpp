@@ -8,7 +8,7 @@
 #include "lua/error_memory.hpp"
 #include "lua/standard_globals.hpp"
 #include "lua/values.hpp"
-#include "text/harmless.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::lua {
 

@@ -13,7 +13,7 @@
 #include "lua/interrupt.hpp"
 #include "lua/standard_globals.hpp"
 #include "terminal/progress.hpp"
-#include "text/harmless.hpp"
+#include "text/characters.hpp"
 
 namespace dinal::lua {
 namespace {

@@ -1,19 +1,19 @@
 #include "lua/user_function.hpp"
 
 #include <fmt/format.h>
-
 #include <fmt/ranges.h>
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lua/bind.hpp"
 #include "lua/error_memory.hpp"
-#include "lua/foreign.hpp"
 #include "lua/formula_reader.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_message.hpp"
@@ -21,6 +21,31 @@
 #include "lua/vector.hpp"
 
 namespace dinal::lua {
+
+namespace {
+
+const Class foreign_class = {"function of another language", {"", "", ""}, std::span<const Member>()};
+
+}  // namespace
+
+void push_foreign(lua_State* L, Foreign function, lua_CFunction call) {
+    static std::atomic<std::uint64_t> last_number = 0;
+    luaL_checkstack(L, 4, "too many values");
+    if (lua_rawgetp(L, LUA_REGISTRYINDEX, &detail::type_key<Foreign>) == LUA_TNIL) {
+        add_class<Foreign>(L, foreign_class);
+    }
+    lua_pop(L, 1);
+    function.number = ++last_number;
+    push(L, std::move(function));
+    lua_pushcclosure(L, call, 1);
+}
+
+const Foreign* foreign(lua_State* L, int index) {
+    if (lua_iscfunction(L, index) == 0 || lua_getupvalue(L, index, 1) == nullptr) return nullptr;
+    const auto* found = test<Foreign>(L, -1);
+    lua_pop(L, 1);
+    return found;
+}
 
 namespace {
 

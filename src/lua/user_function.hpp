@@ -1,7 +1,9 @@
-// A user's Lua function as a term of an excitation, and the Lua call during which it may be evaluated.
+// A user's function, of Lua or of another language such as Python, as a term of an excitation, and the Lua call during
+// which it may be evaluated.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -9,10 +11,30 @@
 
 #include "lua/bind.hpp"
 #include "lua/formula_reader.hpp"
+#include "lua/lua_headers.hpp"
 #include "model/drive.hpp"
 #include "text/not_copied.hpp"
 
 namespace dinal::lua {
+
+/// The first upvalue of the C function that makes the call; owned by the Lua state in which it was made.
+struct Foreign {
+    std::shared_ptr<void> function;
+    int parameters = 1;         ///< number of required parameters
+    const char* language = "";  ///< "Python"
+    std::uint64_t number = 0;   ///< unique in this process
+};
+
+/// Pushes the C function `call` with this upvalue and assigns its number.
+void push_foreign(lua_State* L, Foreign function, lua_CFunction call);
+
+/// The Foreign of the function at `index`, or nullptr.
+[[nodiscard]] const Foreign* foreign(lua_State* L, int index);
+
+/// The Foreign of the running C function; requires push_foreign().
+[[nodiscard]] inline const Foreign& foreign_here(lua_State* L) {
+    return *static_cast<const Foreign*>(lua_touserdata(L, lua_upvalueindex(1)));
+}
 
 /// While this object lives, user functions run on `L`, the state of the present call, often a coroutine. Create one in
 /// every binding that may evaluate an excitation (simulate, e:value, run:at). They nest.

@@ -13,7 +13,7 @@
 #include "model/laws/user_law.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::motion {
 

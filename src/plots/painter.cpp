@@ -18,7 +18,6 @@
 #include "plots/svg_words.hpp"
 #include "plots/thinning.hpp"
 #include "text/characters.hpp"
-#include "text/harmless.hpp"
 
 namespace dinal::plots {
 

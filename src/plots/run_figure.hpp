@@ -1,10 +1,13 @@
-// Figures of a run: response in time, any columns, phase plane.
+// Figures of a run: response in time, any columns, phase plane; the order in which the bodies of a machine are drawn.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "model/oscillator.hpp"
@@ -43,5 +46,9 @@ std::string symbol_for(std::string_view column);
 
 /// The intervals of sticking, from the events.
 std::vector<Interval> stuck_intervals(const motion::Run& run);
+
+/// The bodies 0 to count - 1 in an order in which linked ones are neighbours. It begins with a body that is never
+/// second in a link, such as the motor of a drive, because Lua tables do not store the order of names.
+std::vector<std::size_t> neighbours(std::size_t count, std::span<const std::pair<std::size_t, std::size_t>> links);
 
 }  // namespace dinal::plots

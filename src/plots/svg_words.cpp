@@ -8,7 +8,6 @@
 #include "plots/figure.hpp"
 #include "plots/shades.hpp"
 #include "text/characters.hpp"
-#include "text/harmless.hpp"
 
 namespace dinal::plots {
 namespace {

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <unistd.h>
+
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -14,11 +15,9 @@
 #include "lua/lua_message.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/standard_globals.hpp"
-#include "lua/tokens.hpp"
 #include "prompt/call.hpp"
 #include "prompt/notices.hpp"
 #include "prompt/output.hpp"
-#include "prompt/printer.hpp"
 #include "terminal/display.hpp"
 #include "text/words.hpp"
 

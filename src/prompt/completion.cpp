@@ -2,13 +2,14 @@
 
 #include <fmt/core.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <string>
 
 #include "errors/misspelling.hpp"
 #include "help/help_text.hpp"
-#include "help/signature.hpp"
+#include "help/library.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "prompt/commands.hpp"

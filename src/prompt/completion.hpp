@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "help/library.hpp"
-#include "help/signature.hpp"
 #include "lua/lua_headers.hpp"
-#include "lua/tokens.hpp"
+#include "lua/lua_text.hpp"
 #include "text/not_copied.hpp"
 
 namespace dinal::prompt {

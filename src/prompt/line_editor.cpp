@@ -23,7 +23,6 @@
 #include "prompt/output.hpp"
 #include "prompt/user_files.hpp"
 #include "terminal/display.hpp"
-#include "terminal/pager.hpp"
 #endif
 
 namespace dinal::prompt {

@@ -24,12 +24,11 @@
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
 #include "lua/limits.hpp"
-#include "lua/tokens.hpp"
+#include "lua/lua_text.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"
 #include "text/characters.hpp"
-#include "text/sentences.hpp"
 #include "text/words.hpp"
 
 namespace dinal::prompt {

@@ -8,15 +8,15 @@
 #include <utility>
 #include <vector>
 
+#include "errors/error_remarks.hpp"
 #include "errors/habits.hpp"
 #include "errors/misspelling.hpp"
-#include "errors/source_text.hpp"
 #include "help/help_text.hpp"
-#include "help/signature.hpp"
+#include "help/library.hpp"
 #include "lua/bind.hpp"
+#include "lua/lua_text.hpp"
 #include "lua/options.hpp"
 #include "lua/standard_globals.hpp"
-#include "lua/tokens.hpp"
 #include "prompt/completion.hpp"
 #include "prompt/output.hpp"
 #include "text/suggest.hpp"

@@ -1,9 +1,12 @@
-// Output of the program itself: values and greetings on standard output, errors on standard error.
+// Output of the program itself: values and greetings on standard output, errors on standard error. The prompt shows
+// plain numbers, quoted strings, short tables, objects as cards, and others by tostring.
 #pragma once
 
 #include <string>
 #include <string_view>
 
+#include "lua/lua_headers.hpp"
+#include "terminal/display.hpp"
 #include "text/not_copied.hpp"
 
 namespace dinal::prompt {
@@ -23,5 +26,13 @@ public:
     explicit ErrorsInto(std::string& text);
     ~ErrorsInto();
 };
+
+/// The text for the value at `index`: a table on one line if it fits, otherwise on at most one screen. Reads tables
+/// raw; the only user code that may run is __tostring, whose errors become part of the text. Requires call(): Ctrl-C is
+/// a Lua error.
+std::string show(lua_State* L, int index, const terminal::Display& screen);
+
+/// The beginning of the text on one line of `width` columns.
+std::string show_line(lua_State* L, int index, const terminal::Display& screen, std::size_t width);
 
 }  // namespace dinal::prompt

@@ -17,7 +17,6 @@
 #include "api/data.hpp"
 #include "api/picture.hpp"
 #include "help/library.hpp"
-#include "help/signature.hpp"
 #include "lua/standard_globals.hpp"
 #include "python/state.hpp"
 #include "source/function_source.hpp"

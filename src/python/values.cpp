@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "lua/foreign.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "text/not_copied.hpp"
 

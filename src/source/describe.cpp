@@ -1,10 +1,10 @@
 #include "source/describe.hpp"
 
 #include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
-#include "lua/foreign.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
 #include "model/functions.hpp"

@@ -9,7 +9,6 @@
 #include <type_traits>
 
 #include "lua/bind.hpp"
-#include "lua/foreign.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"

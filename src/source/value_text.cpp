@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "lua/bind.hpp"
-#include "lua/foreign.hpp"
 #include "lua/standard_globals.hpp"
+#include "lua/user_function.hpp"
 #include "lua/vector.hpp"
 #include "motion/integrators.hpp"
 #include "source/describe.hpp"

@@ -1,4 +1,5 @@
-// The abilities of a terminal or another output: its width, its characters and its colours.
+// The abilities of a terminal or another output: its width, its characters and its colours;
+// long texts are shown on it page by page.
 #pragma once
 
 #include <cstddef>
@@ -25,5 +26,13 @@ bool obeys_escapes();
 
 /// Spells out Greek letters and the like if the screen cannot show them; for text of dinal itself.
 std::string spelled(std::string_view text, const Display& screen);
+
+/// Writes the text on standard output. If that is an interactive terminal too low for the text, it stops at the end of
+/// each page: Space and Enter continue, any other key ends the output. PAGER=cat never stops.
+void show_in_pages(std::string_view text);
+
+/// Returns the key that ended the last text if it was meant for the prompt: any key except q, Escape and Ctrl-C.
+/// Returns it once, and '\0' if there is none.
+char key_left_over();
 
 }  // namespace dinal::terminal

@@ -1,4 +1,5 @@
-// UTF-8 text for a terminal: printable characters, widths and line breaks.
+// UTF-8 text for a terminal: printable characters, widths and line breaks; text from outside, made safe to
+// show on it, in a browser or in Markdown.
 #pragma once
 
 #include <cstddef>
@@ -35,5 +36,15 @@ std::string wrapped(std::string_view text, std::size_t width = readable_width);
 
 /// Indents all lines except the first.
 std::string indented(std::string text, std::size_t blanks);
+
+/// For a terminal: keeps lines, tabs and colours; replaces all other control characters by '?'.
+std::string harmless(std::string_view text);
+
+/// For a browser, which shows it unchanged: & < > " ' become entities. Control characters except tab and newline,
+/// direction marks and bytes that are not UTF-8 become U+FFFD.
+std::string html(std::string_view text);
+
+/// For Markdown: & < > become entities, as some readers do not know \<; the `marks` get a backslash.
+std::string markdown(std::string_view text, std::string_view marks);
 
 }  // namespace dinal::text

@@ -9,7 +9,7 @@ import re
 import sys
 
 ROOT = sys.argv[1]
-MOST_ONE_USER_HEADERS = 22
+MOST_ONE_USER_HEADERS = 21
 
 # The floors of the house, from the top: a room includes itself and rooms below it. Rooms within a room (motion/rk4) stand
 # on the same floor as the room around them.

@@ -18,9 +18,7 @@ struct Peer {
 
 inline constexpr std::string_view baseline = "hand-inlined RK4, h = .001";
 
-extern const Peer inlined_peer;     ///< the scheme of 1989, double precision, everything inlined
-extern const Peer cut_peer;         ///< RK4 with the sign frozen and the step cut at velocity zero, h = .001
-extern const Peer cut_peer_coarse;  ///< the same, h = .01
+extern const Peer inlined_peer;  ///< the scheme of 1989, double precision, everything inlined
 extern const Peer odeint_peer;
 extern const Peer gsl_peer;
 extern const Peer cvode_peer;

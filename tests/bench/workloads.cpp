@@ -14,11 +14,9 @@ struct Entry {
     double h;  // 0: the steps are its own affair
 };
 
-const Entry entries[] = {{&inlined_peer, 0.001}, {&cut_peer, 0.001},      {&cut_peer_coarse, 0.01},
-                         {&odeint_peer, 0},      {&gsl_peer, 0},          {&cvode_peer, 0},
-                         {&arcs_peer, 0},        {&rotated_arcs_peer, 0}, {&dinal_exact, 0},
-                         {&dinal_spectral, 0},   {&dinal_rk4, 0.001},     {&dinal_rk4_coarse, 0.01},
-                         {&dinal_1989, 0.001}};
+const Entry entries[] = {{&inlined_peer, 0.001}, {&odeint_peer, 0},         {&gsl_peer, 0},      {&cvode_peer, 0},
+                         {&arcs_peer, 0},        {&rotated_arcs_peer, 0},   {&dinal_exact, 0},   {&dinal_spectral, 0},
+                         {&dinal_rk4, 0.001},    {&dinal_rk4_coarse, 0.01}, {&dinal_1989, 0.001}};
 
 void measure(benchmark::State& state, Results& results, const Workload& work, const Peer& peer) {
     Item& item = results.of(std::string(work.name), std::string(peer.name));

@@ -1,5 +1,5 @@
 // Laws of friction with corners, named by the law: no bump between two of them is missed, however narrow.
-// hybrid_test.cpp has tables by lot.
+// oracle_test.cpp has tables by lot.
 #include <cmath>
 
 #include "analysis/energy.hpp"

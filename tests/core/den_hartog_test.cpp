@@ -1,5 +1,5 @@
 // Den Hartog's motion and stop boundary against numbers of 80 digits, the balance of energy, and rk4.
-#include "theory/den_hartog.hpp"
+#include "theory/forced.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,6 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
-#include "theory/theory_forced.hpp"
 
 namespace dinal::den_hartog_test {
 

@@ -11,7 +11,7 @@
 #include "support/excitations.hpp"
 #include "support/measure.hpp"
 #include "text/characters.hpp"
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 namespace dinal::explain_test {
 

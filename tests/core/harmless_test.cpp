@@ -1,5 +1,5 @@
 // What a stranger has written cannot steer the terminal that shows it.
-#include "text/harmless.hpp"
+#include "text/characters.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,4 +1,4 @@
-// Friction laws other than one number each for sliding and holding; hybrid_test.cpp and corners_test.cpp have their
+// Friction laws other than one number each for sliding and holding; oracle_test.cpp and corners_test.cpp have their
 // motions against independent integrators.
 #include <cmath>
 

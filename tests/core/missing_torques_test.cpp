@@ -1,6 +1,6 @@
 // The responses to torques that a model lacks, against runs of systems that have them: a stiffer spring, more damping,
 // less friction.
-#include "analysis/missing_torques.hpp"
+#include "analysis/misfit.hpp"
 
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <numbers>
 
-#include "analysis/stretches.hpp"
+#include "analysis/recurrence.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"

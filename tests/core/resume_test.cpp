@@ -100,22 +100,6 @@ TEST_CASE("a run can be continued from any time, also from the very moment of a 
     }
 }
 
-TEST_CASE("a run continued from the time of a turn has that turn once", "[resume][spectral]") {
-    for (int i = 0; i < 6; ++i) {
-        const Oscillator system = nondimensional(i % 3 == 0 ? 0 : 0.07, i % 2 == 0 ? 0 : 0.1);
-        const Excitation M = Excitation::make(Sawtooth{.amplitude = 1.3, .period = 0.9 + 0.07 * i}).value();
-        const Run whole = must_run(system, M, {0.4, 5}, {0, 20}, Grid::none(), Spectral{});
-        for (const Event& cut : whole.events) {
-            if (cut.kind != EventKind::turn) continue;
-            const Run first = must_run(system, M, {0.4, 5}, {0, cut.t}, Grid::none(), Spectral{});
-            const auto all = resume(system, M, first, 20, Grid::none(), Spectral{});
-            CAPTURE(i, cut.t);
-            REQUIRE(all);
-            REQUIRE(all->events.size() == whole.events.size());
-        }
-    }
-}
-
 TEST_CASE("a run with very many rows at rest stops on request, and can be continued", "[resume]") {
     const Oscillator system = nondimensional(0, 0.5);
     const Excitation load = harmonic(0.3, 1);  // cannot move it

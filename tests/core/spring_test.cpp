@@ -1,4 +1,4 @@
-// Springs besides k theta: their energy, steady motion and story; hybrid_test.cpp has systems with springs by lot.
+// Springs besides k theta: their energy, steady motion and story; oracle_test.cpp has systems with springs by lot.
 #include <cmath>
 
 #include "analysis/energy.hpp"

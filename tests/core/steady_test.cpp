@@ -10,7 +10,7 @@
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"
-#include "theory/den_hartog.hpp"
+#include "theory/forced.hpp"
 
 namespace dinal::steady_test {
 
@@ -147,52 +147,6 @@ TEST_CASE("a load that hardly exceeds friction moves the mass a little twice a p
         CHECK(run.state_at_stop.theta == within(found.start.theta, 1e-13));
         CHECK(run.state_at_stop.velocity == within(found.start.velocity, 1e-12));
     }
-}
-
-TEST_CASE("without dry friction the multipliers and the lag are those of linear theory", "[steady]") {
-    for (const double zeta : {0.05, 0.3, 1.0, 1.7}) {
-        const double r = 0.7;
-        const SteadyQuestion question = driven(r, 0, zeta);
-        const SteadyMotion found = steady_motion(question);
-        REQUIRE(found.status == SteadyStatus::steady);
-        const std::complex<double> root = std::sqrt(std::complex<double>(zeta * zeta - 1, 0));
-        const double T = 2 * pi / r;  // in units of 1/w0
-        const std::complex<double> slow = std::exp((-zeta + root) * T), fast = std::exp((-zeta - root) * T);
-        const std::complex<double> sum = found.multipliers[0] + found.multipliers[1];
-        CHECK(std::abs(sum - slow - fast) < 1e-13);
-        CHECK(std::abs(found.multipliers[0] * found.multipliers[1] - slow * fast) < 1e-13);
-        CHECK(*shape_of(question, found).lag == within(std::atan2(2 * zeta * r, 1 - r * r), 2e-12));
-        CHECK(found.amplitude == within(1 / std::hypot(1 - r * r, 2 * zeta * r), 1e-12));
-    }
-}
-
-TEST_CASE("a load that friction can hold moves nothing, and the places of rest are known", "[steady]") {
-    SteadyQuestion question = driven(0.7, 1.3);
-    SteadyMotion found = steady_motion(question);
-    REQUIRE(found.status == SteadyStatus::adheres);
-    CHECK(found.amplitude == 0);
-    CHECK(found.rest.first == within(-0.3, 1e-12));
-    CHECK(found.rest.second == within(0.3, 1e-12));
-    // From outside it slides in and stays at the edge or within.
-    question.drive.start_at({2, 0});
-    found = steady_motion(question);
-    REQUIRE(found.status == SteadyStatus::adheres);
-    CHECK(std::fabs(found.start.theta) <= 0.3 + 1e-12);
-    // A constant part moves the interval.
-    question.drive.loads = {question.drive.M() + truth::harmonic(0.2, 0, pi / 2)};
-    CHECK(steady_motion(question).rest.second == within(0.5, 1e-12));
-}
-
-TEST_CASE("at resonance the amplitude grows by pi - 4 gamma a period below gamma = pi/4, and not above", "[steady]") {
-    for (const double gamma : {0.0, 0.167, 0.5, 0.78}) {
-        SteadyQuestion question = driven(1, gamma);
-        question.drive.start_at({1, 0});
-        const SteadyMotion found = steady_motion(question);
-        REQUIRE(found.status == SteadyStatus::grows);
-        CHECK(found.growth == within(pi - 4 * gamma, 1e-12));
-    }
-    CHECK(steady_motion(driven(1, 0.79)).status == SteadyStatus::steady);
-    CHECK(steady_motion(driven(1, 0.5, 1e-3)).status == SteadyStatus::steady);
 }
 
 TEST_CASE("a square wave whose parts differ by a thousandth of the period is not taken for symmetric", "[steady]") {

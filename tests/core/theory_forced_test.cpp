@@ -1,5 +1,5 @@
 // Closed forms of steady motion without dry friction, and of friction taken for viscous.
-#include "theory/theory_forced.hpp"
+#include "theory/forced.hpp"
 
 #include <cmath>
 #include <complex>

@@ -26,9 +26,14 @@ std::vector<Sliding> lines_through(const std::vector<double>& speed, const std::
     return ranges;
 }
 
-/// Except for a steep law the fastest time scale is about 0.1: the error of a step is (0.01/0.1)^9 of its small change.
+/// Except for a steep law, strong damping or close breaks the fastest time scale is about 0.1: the error of a step is
+/// (0.01/0.1)^9 of its small change.
 real MixedTruth::longest_step() const {
-    return way_ == 0 ? 0.01L : std::min(0.01L, 0.05L * s_.I / s_.sliding[range_].steep);
+    constexpr real least_steps = 24;  // from one break to the next
+    real longest = breaks_.empty() ? 0.01L : std::min(0.01L, (*breaks_.begin() - since_) / least_steps);
+    if (way_ == 0) return longest;
+    longest = std::min(longest, 0.05L * s_.I / s_.sliding[range_].steep);
+    return s_.C > 0 ? std::min(longest, 0.1L * s_.I / s_.C) : longest;
 }
 
 MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, std::vector<double> times)
@@ -46,13 +51,17 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
     slide(sign(slip(0, y_)));
     if (way_ == 0) settle(false);
     for (long steps = 0; t_ < t_end && !doubtful; ++steps) {
-        while (!breaks_.empty() && *breaks_.begin() <= t_) breaks_.erase(breaks_.begin());
+        while (!breaks_.empty() && *breaks_.begin() <= t_) {
+            since_ = *breaks_.begin();
+            breaks_.erase(breaks_.begin());
+        }
         real end = std::min(t_end, t_ + longest_step());
         if (!breaks_.empty()) end = std::min(end, *breaks_.begin());
         if (s_.sampled) end = std::min(end, s_.every * static_cast<real>(instant_));
         if (!pending_.empty()) end = std::min(end, pending_.front().first);
         if (end - t_ < 1e-15L && end < t_end) end = t_ + 1e-15L;
         real h = end - t_;
+        while (s_.bends && h > 1e-9L && !is_resolved(h)) h /= 2, end = t_ + h;
         int what = nothing;
         bool found = false;
         for (const real part : {h / 2, h}) {
@@ -71,9 +80,9 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
             break;
         }
         while (motions.size() < times.size() && static_cast<real>(times[motions.size()]) < t_ + h) {
-            motions.push_back(stepped(static_cast<real>(times[motions.size()]) - t_));
+            motions.push_back(stepped(t_, y_, static_cast<real>(times[motions.size()]) - t_));
         }
-        const MixedPoint next = stepped(h);
+        const MixedPoint next = stepped(t_, y_, h);
         if (s_.delayed && h > 0) {
             past_.push_back({t_, h, y_, next, slope(t_, y_).velocity, slope(t_ + h, next).velocity});
         }
@@ -95,8 +104,10 @@ MixedTruth::MixedTruth(MixedSystem system, const MixedPoint& start, real t_end, 
             const real p = pull(t_, y_);
             if (std::fabs(p) > s_.holding[p > 0 ? 1 : 0] && sign(p) != wall_) happen(lets_go);
         }
-        doubtful =
-            doubtful || !(std::fabs(y_.theta) + std::fabs(y_.velocity) < 1e3L) || events.size() > 300 || steps > 300000;
+        const bool creeps =
+            !found && way_ != 0 && is_dry() && std::fabs(slip(t_, y_)) + std::fabs(slope(t_, y_).velocity) < 1e-8L;
+        doubtful = doubtful || creeps || !(std::fabs(y_.theta) + std::fabs(y_.velocity) < 1e3L) ||
+                   events.size() > 300 || steps > 300000;
     }
     while (motions.size() < times.size()) motions.push_back(y_);
 }
@@ -120,7 +131,7 @@ MixedPoint MixedTruth::then(real t) const {
 /// All torques except friction, damping and those of the moving frame.
 real MixedTruth::torque(real t, const MixedPoint& y) const {
     real M = s_.M(t, y);
-    if (s_.broken) M += s_.broken(t, middle_);
+    if (s_.broken) M += s_.broken(t, middle_, y);
     if (s_.sampled) M += output_;
     if (s_.relay_of) M += s_.levels[on_ ? 0 : 1];
     if (s_.delayed) M += s_.delayed(t, then(t - s_.by));
@@ -143,23 +154,29 @@ MixedPoint MixedTruth::slope(real t, const MixedPoint& y) const {
             s_.rate(t, y)};
 }
 
-MixedPoint MixedTruth::stepped(real h) const {
+/// Returns whether a step leads to where its halves lead: it passes no corner.
+bool MixedTruth::is_resolved(real h) const {
+    const MixedPoint whole = stepped(t_, y_, h), halves = stepped(t_ + h / 2, stepped(t_, y_, h / 2), h / 2);
+    return std::fabs(whole.theta - halves.theta) + std::fabs(whole.velocity - halves.velocity) < 1e-15L;
+}
+
+MixedPoint MixedTruth::stepped(real from, const MixedPoint& y, real h) const {
     using P = std::array<real, 3>;
-    middle_ = t_ + h / 2;
-    if (!(h > 0)) return y_;
-    P p{y_.theta, y_.velocity, y_.z};
+    middle_ = from + h / 2;
+    if (!(h > 0)) return y;
+    P p{y.theta, y.velocity, y.z};
     boost::numeric::odeint::runge_kutta_fehlberg78<P, real>().do_step(
         [&](const P& q, P& dq, real t) {
             const MixedPoint d = slope(t, {q[0], q[1], q[2]});
             dq = {d.theta, d.velocity, d.z};
         },
-        p, t_, h);
+        p, from, h);
     return {p[0], p[1], p[2]};
 }
 
 /// Returns whether a step of this length contains an event, and which.
 bool MixedTruth::happens(real h, int& what) const {
-    const MixedPoint y = stepped(h);
+    const MixedPoint y = stepped(t_, y_, h);
     const real t = t_ + h;
     what = nothing;
     if (way_ != 0 && static_cast<real>(way_) * slip(t, y) < 0) {
@@ -191,7 +208,7 @@ void MixedTruth::happen(int what) {
             slide(sign(pull(t_, y_)));
             fresh_ = true;
             wall_ = 0;
-            tell("slip");
+            if (is_dry()) tell("slip");
             break;
         case hits: {
             const int side = y_.theta > (s_.lower + s_.upper) / 2 ? 1 : -1;

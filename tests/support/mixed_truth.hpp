@@ -1,5 +1,5 @@
-// A second opinion on runs with states, controllers with a memory, belts, bases, friction laws, walls and user events:
-// Fehlberg 7(8) of Boost.odeint in long double with short steps, event by event.
+// A second opinion on any run of one body, with states, controllers with a memory, belts, bases, friction laws, walls
+// and user events: Fehlberg 7(8) of Boost.odeint in long double with short steps, event by event.
 //
 // Uses nothing of src. Times, angles, velocities and torques are of order 1.
 #pragma once
@@ -39,8 +39,9 @@ struct MixedSystem {
     std::array<real, 2> holding{};  ///< backward, forward
     F<real> M;                      ///< without controllers
     /// The part of M that jumps or bends at `breaks`: at t, for a step around `inside`. Empty: none.
-    std::function<real(real t, real inside)> broken;
+    std::function<real(real t, real inside, const MixedPoint&)> broken;
     std::vector<real> breaks;
+    bool bends = false;  ///< whether M may have corners in theta
     F<real> rate = [](real, const MixedPoint&) -> real { return 0; };
     std::function<real(real)> belt, belt_rate, base;  ///< empty: none
     F<real> sampled;                                  ///< empty: none
@@ -68,7 +69,7 @@ public:
     std::vector<MixedEvent> events;
     std::vector<MixedPoint> motions;
     int corners_passed = 0;  ///< corners of the law
-    bool doubtful = false;   ///< whether a step contains more than it can resolve, or the motion diverges
+    bool doubtful = false;   ///< whether a step contains more than it can resolve, or the motion creeps or diverges
 
 private:
     struct Past {
@@ -76,12 +77,14 @@ private:
         MixedPoint begin, end;
         real a0, a1;
     };
+    [[nodiscard]] bool is_dry() const { return s_.holding[0] + s_.holding[1] > 0; }
     [[nodiscard]] real belt(real t) const { return s_.belt ? s_.belt(t) : 0; }
     [[nodiscard]] real slip(real t, const MixedPoint& y) const { return y.velocity - belt(t); }
     [[nodiscard]] real torque(real t, const MixedPoint& y) const;
     [[nodiscard]] real pull(real t, const MixedPoint& y) const;
     [[nodiscard]] MixedPoint slope(real t, const MixedPoint& y) const;
-    [[nodiscard]] MixedPoint stepped(real h) const;
+    [[nodiscard]] MixedPoint stepped(real from, const MixedPoint& y, real h) const;
+    [[nodiscard]] bool is_resolved(real h) const;
     [[nodiscard]] MixedPoint then(real t) const;
     [[nodiscard]] bool happens(real h, int& what) const;
     void happen(int what);
@@ -96,6 +99,7 @@ private:
     MixedSystem s_;
     real t_ = 0;
     mutable real middle_ = 0;  // middle of the trial step
+    real since_ = 0;           // the last break
     MixedPoint y_, start_;
     int way_ = 0;            // direction of sliding; 0: stuck
     std::size_t range_ = 0;  // range of the law

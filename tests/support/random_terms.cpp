@@ -1,4 +1,4 @@
-// Random native terms and user functions, each with independent formulas for the oracle.
+// Random native terms and user functions, each with independent formulas for the independent integrator.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -17,10 +17,8 @@ constexpr real pi = std::numbers::pi_v<real>;
 
 /// A function of time: `shape(t, inside)` for double and for long double.
 template <class Shape>
-Load load_of(Shape shape, std::vector<double> breaks = {}, double quickest = 0) {
-    std::sort(breaks.begin(), breaks.end());
-    return {[shape](real t, real inside, const Motion&) -> real { return shape(t, inside); }, std::move(breaks),
-            quickest};
+Load load_of(Shape shape, std::vector<double> breaks = {}) {
+    return {[shape](real t, real inside, const MixedPoint&) -> real { return shape(t, inside); }, std::move(breaks)};
 }
 
 /// A native term, with the Lua text that makes it as its description.
@@ -31,9 +29,8 @@ Ingredient term_of(const Term& term, Load load) {
 }
 
 Ingredient sine_of(double a, double omega, double phase) {
-    return term_of(
-        model::Harmonic{a, omega, phase},
-        load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }, {}, omega));
+    return term_of(model::Harmonic{a, omega, phase},
+                   load_of([=](auto t, auto) -> real { return a * std::sin(omega * static_cast<real>(t) + phase); }));
 }
 
 Ingredient exponential_of(double a, double tau, double at) {
@@ -153,8 +150,7 @@ Ingredient chirp(Lot& lot, const Units& u) {
                                                  : duration * ((f0 + f1) / 2) + f1 * (x - duration);
         return a * std::sin(2 * pi * cycles + phase);
     };
-    return term_of(model::Chirp{a, f0, f1, duration, at, phase},
-                   load_of(shape, {at, at + duration}, 6.3 * std::max(f0, f1)));
+    return term_of(model::Chirp{a, f0, f1, duration, at, phase}, load_of(shape, {at, at + duration}));
 }
 
 Ingredient polynomial(Lot& lot, const Units& u) {
@@ -166,7 +162,7 @@ Ingredient polynomial(Lot& lot, const Units& u) {
         for (auto x = c.rbegin(); x != c.rend(); ++x) sum = sum * (t - at) + *x;
         return sum;
     };
-    return term_of(model::Polynomial{c, at}, load_of(shape, {}, 3 / length));
+    return term_of(model::Polynomial{c, at}, load_of(shape));
 }
 
 Ingredient table(Lot& lot, const Units& u) {
@@ -226,8 +222,8 @@ Ingredient random_resonant_term(Lot& lot, const Units& u, double damping_ratio) 
     return exponential_of(a, tau, at);
 }
 
-/// A bump; narrow ones are large enough to have an effect. For the oracle, which takes few steps between breaks, it has
-/// additional breaks.
+/// A bump; narrow ones are large enough to have an effect. For the independent integrator, which takes few steps
+/// between breaks, it has additional breaks.
 Ingredient random_bump(Lot& lot, const Units& u, double width) {
     const double felt = u.torque * std::max(1.0, u.period / (15 * width));
     const double a = felt * lot.between(-1.5, 1.5), at = lot.between(u.window.start, u.window.end);
@@ -252,7 +248,7 @@ Ingredient random_function_of_time(Lot& lot, const Units& u) {
                 return a * std::sin(x + depth * std::sin(2 * x)) * std::exp(std::cos(x) - 1);
             };
             return {fmt::format("smooth a {:.17g} w {:.17g} phase {:.17g} depth {:.17g}", a, w, phase, depth),
-                    script_of(shape), load_of(shape, {}, w * (2 + 2 * depth))};
+                    script_of(shape), load_of(shape)};
         }
         case 1: {  // |sin|: kinks
             const auto shape = [=](auto t, auto in) {
@@ -260,7 +256,7 @@ Ingredient random_function_of_time(Lot& lot, const Units& u) {
             };
             const double half = std::numbers::pi / w;
             return {fmt::format("rectified a {:.17g} w {:.17g} phase {:.17g}", a, w, phase), script_of(shape),
-                    load_of(shape, every(first - phase / w, half, u), w)};
+                    load_of(shape, every(first - phase / w, half, u))};
         }
         case 2: {  // a polygon
             const std::vector<double> edges = scattered(lot, u, 2 + lot.of(8), 0.15 * u.period);
@@ -287,7 +283,7 @@ Ingredient random_function_of_time(Lot& lot, const Units& u) {
             return {fmt::format("jumps{} at {:.17g} levels {:.17g} a/2 {:.17g} w {:.17g} phase {:.17g}",
                                 announced ? " (announced)" : "", fmt::join(edges, ", "), fmt::join(levels, ", "), a / 2,
                                 w, phase),
-                    script_of(shape, announced ? edges : std::vector<double>{}), load_of(shape, edges, w)};
+                    script_of(shape, announced ? edges : std::vector<double>{}), load_of(shape, edges)};
         }
     }
 }
@@ -325,8 +321,8 @@ Ingredient random_feedback(Lot& lot, const Units& u) {
     const auto function = written([shape](double t, const model::State& y, auto) {
         return static_cast<double>(shape(t, t, y.theta, y.velocity));
     });
-    const Load load{[shape](real t, real in, const Motion& y) -> real { return shape(t, in, y.theta, y.velocity); },
-                    kind == 8 ? std::vector<double>{at} : std::vector<double>{}, w};
+    const Load load{[shape](real t, real in, const MixedPoint& y) -> real { return shape(t, in, y.theta, y.velocity); },
+                    kind == 8 ? std::vector<double>{at} : std::vector<double>{}};
     return {
         fmt::format("feedback {} a {:.17g} b {:.17g} w {:.17g} at {:.17g} angle {:.17g} speed {:.17g} torque {:.17g}",
                     kind, a, b, w, at, angle, speed, torque),

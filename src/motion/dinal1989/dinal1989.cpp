@@ -19,7 +19,6 @@
 #include "model/excitation.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/oscillator.hpp"
-#include "motion/checkpoints.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/rows.hpp"
 

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "motion/checkpoints.hpp"
 #include "motion/engine/affine_block.hpp"
 #include "motion/interpolation.hpp"
 #include "motion/lone_contact.hpp"

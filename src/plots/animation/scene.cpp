@@ -8,9 +8,8 @@
 #include <numbers>
 #include <utility>
 
-#include "plots/neighbours.hpp"
+#include "plots/run_figure.hpp"
 #include "text/characters.hpp"
-#include "text/harmless.hpp"
 
 namespace dinal::plots::animation {
 

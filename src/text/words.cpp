@@ -1,4 +1,4 @@
-#include "text/sentences.hpp"
+#include "text/words.hpp"
 
 #include <fmt/format.h>
 

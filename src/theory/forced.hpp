@@ -1,16 +1,34 @@
-// Den Hartog's exact steady motion with dry friction under M0 sin wt, and its boundary to motions with stops.
+// Closed forms of the steady motion under M0 sin wt: without dry friction, with friction as equivalent viscous damping,
+// and Den Hartog's exact one with dry friction, with its boundary to motions with stops.
 //
-// J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
-// stops, friction is a square wave that jumps at the turns. The steady motion is antisymmetric after half a
-// period, so its response to that square wave at a turn depends on r and zeta only; zero velocity at the turn yields
-// the amplitude. docs/theory.md, section 12, has the derivation.
+// r = w/w0, zeta viscous, gamma = Rd/M0 the friction ratio; amplitudes in units of M0/k, lags in rad.
 #pragma once
 
 #include <optional>
 
+#include "model/oscillator.hpp"
 #include "theory/theory_free.hpp"
 
 namespace dinal::theory {
+
+/// 1 - r^2 without loss of digits near resonance.
+inline double detuning(double r) {
+    return (1 - r) * (1 + r);
+}
+
+/// Phi = 1/sqrt((1 - r^2)^2 + 4 zeta^2 r^2); infinity at r = 1 without damping.
+double magnification(double r, double zeta);
+/// The lag of the motion behind the load: atan2(2 zeta r, 1 - r^2), 0 to pi; pi/2 at r = 1 for any zeta.
+double phase_lag(double r, double zeta);
+
+/// Amplitude and lag of a harmonic motion, or of the fundamental of another motion.
+struct Harmonic_motion {
+    double amplitude = 0;
+    double lag = 0;
+};
+/// The motion with friction replaced by equivalent damping, for small gamma. None from gamma = pi/4 on, where friction
+/// would dissipate more than the load supplies.
+std::optional<Harmonic_motion> linearised_friction(double r, double zeta, double friction_ratio);
 
 /// Amplitudes in units of M0/k, lags behind the load in rad.
 struct SlidingMotion {
@@ -20,6 +38,10 @@ struct SlidingMotion {
     double fundamental_lag = 0;
 };
 
+/// J. P. Den Hartog, "Forced vibrations with combined Coulomb and viscous friction", Trans. ASME 53 (1931). Without
+/// stops, friction is a square wave that jumps at the turns. The steady motion is antisymmetric after half a period, so
+/// its response to that square wave at a turn depends on r and zeta only; zero velocity at the turn yields the
+/// amplitude. docs/theory.md, section 12, has the derivation.
 class DenHartog {
 public:
     static constexpr double slowest = 1e-4;  ///< half a period of the load then has 5000 natural periods
