@@ -642,4 +642,29 @@ test("the motion slides and rests on the steps of a staircase as on those of com
     end
 end)
 
+test("a mass that begins at rest on a jump that drives it back stays there, however the jump is written", function()
+    local signs = {
+        function(x) return x > 0 and 1 or x < 0 and -1 or 0 end,
+        function(x) return x < 0 and -1 or x > 0 and 1 or 0 end,
+        function(x) return x >= 0 and 1 or -1 end,
+        function(x) return x <= 0 and -1 or 1 end,
+        function(x) return (x > 0 and 1 or 0) - (x < 0 and 1 or 0) end,
+    }
+    for n, sign in ipairs(signs) do
+        for _, load in ipairs { -0.9, -0.5, 0, 0.5, 0.9 } do
+            for _, k in ipairs { 0, 2 } do
+                for _, case in ipairs {
+                    { load, sign },
+                    { function(t, theta) return load - sign(theta) end },
+                    { function(t, theta) return load + 0.05 * math.sin(t) - sign(theta) end },
+                } do
+                    local run = system { I = 1, k = k, spring = case[2] }:simulate { M = case[1], t_end = 10, dt = 1 }
+                    equal(run.t[#run], 10)
+                    assert(run.theta:abs():max() < 1e-9, ("sign %d, load %g, k %g: %s"):format(n, load, k, run.outcome))
+                end
+            end
+        end
+    end
+end)
+
 finish()
