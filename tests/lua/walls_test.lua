@@ -256,4 +256,16 @@ test("runs that begin at an elastic stop exactly, or to rounding, go on", functi
     end
 end)
 
+test("bounces that keep their speed end where they are lower than the rounding of the angles", function()
+    -- The freewheel takes b along with a: what is left of its bounces in c would take 1e8 impacts in a time unit.
+    local rig = system {
+        bodies = { a = { I = 2, k = 10, Rd = 0.1, walls = { lower = -0.2, upper = 0.2, restitution = 1 } }, b = { I = 0.1 }, c = { I = 0.5 } },
+        links = { pawl = { "a", "b", friction = friction.freewheel { Rd = 0.1 } }, stop = { "b", "c", walls = { lower = -0.1, upper = 0, restitution = 1 } } },
+    }
+    local run = rig:simulate { M = { c = excitation.harmonic { omega = 1 } }, t_end = 20, dt = 0.1 }
+    equal(run.status, "end")
+    assert(#run.events < 1000, #run.events)
+    closes(run)
+end)
+
 finish()
