@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numeric>
 #include <random>
 #include <string>
@@ -207,7 +208,8 @@ TEST_CASE("random chains with friction move the same at another tolerance, and a
 
 TEST_CASE("random machines with freewheels, belts and a gear move as a plain time stepping computes", "[bodies]") {
     // Contacts without a torque of their own, held by a gear, a freewheel, or a belt whose velocity passes 0.
-    for (const unsigned seed : {1, 2, 3, 4, 323, 355, 460, 561, 1320, 1887, 1888, 3315, 3564, 3594, 4120}) {
+    for (const unsigned seed :
+         std::initializer_list<unsigned>{1, 2, 3, 4, 323, 355, 460, 561, 1320, 1887, 1888, 3315, 3564, 3594, 4120}) {
         CAPTURE(seed);
         const Rig rig = random_machine(seed);
         const Run found = run(rig);
