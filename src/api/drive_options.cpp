@@ -36,15 +36,13 @@ std::vector<std::string> names_for_relays(const model::System& system, const mod
 
 void check_rigid_start(const lua::Options& options, const model::System& system, const model::Joint& joint,
                        const std::vector<double>& velocities) {
-    double size = 0;
     std::string given;
     for (const auto& [body, by] : joint.of) {
-        size += std::fabs(by * velocities[body]);
         given += fmt::format("{}{} = {:.6g}", given.empty() ? "" : ", ", system.bodies[body].name, velocities[body]);
     }
     const double speed = joint.sum(velocities);
     constexpr double rounded = 1e-14;
-    if (std::fabs(speed) <= rounded * size) return;
+    if (std::fabs(speed) <= rounded * joint.size(velocities)) return;
     options.fail("velocity0", fmt::format("velocity0: the rigid link {} keeps {} as it is, but {} changes it by {:.6g} "
                                           "per time unit",
                                           joint.name, system.angle_in_words(joint), given, speed));
@@ -52,11 +50,9 @@ void check_rigid_start(const lua::Options& options, const model::System& system,
 
 void check_one_way(const lua::Options& options, const model::System& system, const model::Joint& joint,
                    const std::vector<double>& velocities) {
-    double size = 0;
-    for (const auto& [body, by] : joint.of) size += std::fabs(by * velocities[body]);
     const double slip = joint.sum(velocities);
     constexpr double rounded = 1e-14;
-    if (!(slip < -rounded * size)) return;
+    if (!(slip < -rounded * joint.size(velocities))) return;
     options.fail("velocity0", fmt::format("velocity0: the freewheel{} turns forward only, but begins with {:.6g}",
                                           system.named ? " " + joint.name : "", slip));
 }
@@ -107,9 +103,7 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
         if (one_way && free) check_one_way(options, system, joint, drive.velocity0);
         if (!joint.walls) continue;
         const double angle = joint.sum(drive.theta0);
-        double size = 0;
-        for (const auto& [body, by] : joint.of) size += std::fabs(by * drive.theta0[body]);
-        if (auto wrong = joint.walls->crossed_by(angle, size)) {
+        if (auto wrong = joint.walls->crossed_by(angle, joint.size(drive.theta0))) {
             if (system.is_link(j)) {
                 wrong->sentence = fmt::format("theta0: the angle {} of the link {} is beyond its walls from {} to {}",
                                               angle, joint.name, joint.walls->lower, joint.walls->upper);

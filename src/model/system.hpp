@@ -93,6 +93,13 @@ struct Joint {
         for (const auto& [body, by] : of) total += by * of_bodies[body];
         return total;
     }
+    /// Returns the sum of the magnitudes of its terms, to which the rounding of sum() is relative.
+    template <class Values>
+    double size(const Values& of_bodies) const {
+        double total = 0;
+        for (const auto& [body, by] : of) total += std::fabs(by * of_bodies[body]);
+        return total;
+    }
     bool is_on(std::size_t body) const {
         return std::ranges::any_of(of, [body](const Weight& weight) { return weight.body == body; });
     }

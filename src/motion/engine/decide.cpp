@@ -391,9 +391,7 @@ bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;
         frame.offsets(of_joints, mode(), offsets);
-        double size = 0;
-        for (const auto& [body, by] : own.of) size += std::fabs(by * offsets[body]);
-        return std::fabs(own.sum(offsets) - of_joints[joint]) <= nearly * size;
+        return std::fabs(own.sum(offsets) - of_joints[joint]) <= nearly * own.size(offsets);
     };
     std::vector<double> belts(joints()), rates(joints());
     for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = belt(j), rates[j] = now().belt_slopes[j].rate;

@@ -84,9 +84,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
         // changes nothing.
-        double size = std::fabs(place);  // a bounce below the rounding of these angles is no motion
-        for (const auto& [body, by] : own.of) size += std::fabs(by * now_.y[body]);
-        const bool unseen = e * before * bounces->once <= 4 * rounding * size;
+        // A bounce lower than the rounding of the angles is no motion.
+        const bool unseen = e * before * bounces->once <= 4 * rounding * (std::fabs(place) + own.size(now_.y));
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace || unseen;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }

@@ -446,9 +446,7 @@ double Mechanics::velocity(std::size_t joint, std::span<const double> y) const {
 }
 
 double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) const {
-    double sum = 0;
-    for (const auto& [body, by] : system_.joints[joint].of) sum += std::fabs(by * y[bodies() + body]);
-    return sum;
+    return system_.joints[joint].size(y.subspan(bodies()));
 }
 
 double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
@@ -663,8 +661,7 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
         if (deep >= 0) size += own.stops->stiffness * (std::fabs(q) + deep) + own.stops->damping * std::fabs(v);
     }
     if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
-        double known = 0;
-        for (const auto& [body, by] : own.of) known += std::fabs(by * at.y[body]);
+        const double known = own.size(at.y);
         size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
         const auto by_steepness = [&](double part) {
             return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
