@@ -27,7 +27,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
             note_failure(*search.failed(), seen);
             return {};
         }
-        facts_.residual = search.nearest_repeat();
+        facts_.change = search.nearest_repeat();
         const std::size_t half = sizes.empty() ? seen.size() : seen.size() / 2;
         sizes.push_back(largest(seen, 0, half));
         if (half < seen.size()) {
@@ -150,8 +150,9 @@ std::optional<Closed> ClosedSearch::closes(double near) {
     return {};
 }
 
-double ClosedSearch::nearest_repeat() const {
+std::optional<double> ClosedSearch::nearest_repeat() const {
     constexpr std::size_t in_a_row = 32;  // an irregular motion comes near to itself once, not for so long
+    constexpr double nearly = 1e-2;
     double nearest = model::never;
     for (std::size_t m = 1; m <= static_cast<std::size_t>(longest_) && m + in_a_row < seen_.size(); ++m) {
         double farthest = 0;
@@ -160,7 +161,7 @@ double ClosedSearch::nearest_repeat() const {
         }
         nearest = std::min(nearest, farthest);
     }
-    return nearest;
+    return nearest < nearly ? std::optional(nearest) : std::nullopt;
 }
 
 /// The motion with the smallest number of returns; slow decay can make a multiple look closer.

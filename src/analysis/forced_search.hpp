@@ -28,8 +28,9 @@ public:
     std::optional<Closed> follow(Return first, const std::vector<int>& counts);
 
     const std::vector<Return>& seen() const { return seen_; }
-    /// How nearly the last returns repeat earlier ones, in sizes of the motion; infinite if there are too few.
-    double nearest_repeat() const;
+    /// The greatest distance of the last returns from earlier ones, in sizes of the motion; empty if they do not nearly
+    /// repeat or there are too few.
+    std::optional<double> nearest_repeat() const;
     std::optional<model::Outcome> failed() const { return failed_; }
 
 private:

@@ -68,9 +68,9 @@ private:
     double size_at(const Map::Return& at) const override { return length_of(whole_->place(at.to)); }
     bool complete(const Closed& found, bool any) override {
         const Place x = whole().place(found.x);
-        if (found.returns == 1) return settle(whole(), x, 1, found.residual, any);
+        if (found.returns == 1) return settle(whole(), x, 1, any);
         PeriodMap longer(question_, found.returns, monitor_);
-        const bool settled = settle(longer, x, found.returns, found.residual, any);
+        const bool settled = settle(longer, x, found.returns, any);
         if (longer.contradiction()) contradiction_ = longer.contradiction();
         return settled;
     }
@@ -114,7 +114,7 @@ private:
             step = whole().step(x);
             ++facts_.maps;
         }
-        if (step.finished && !step.moved && settle(whole(), x, 1, 0, true)) return;
+        if (step.finished && !step.moved && settle(whole(), x, 1, true)) return;
         facts_.status = SteadyStatus::grows;
         facts_.growth = growth;
         facts_.outcome = step.outcome;
@@ -137,7 +137,7 @@ private:
         const auto found = ClosedSearch(half(), facts_.maps, 1).at_once(first, 1, true);
         if (!found) return false;
         const Place x = half().place(found->x);
-        return repeats(x) && settle(half(), x, 1, found->residual, false);
+        return repeats(x) && settle(half(), x, 1, false);
     }
 
     /// Verifies antisymmetry over a whole period, because that of a function was only sampled.
@@ -150,7 +150,7 @@ private:
     }
 
     /// Completes the answer for the motion through a fixed point of a map over this number of periods.
-    bool settle(PeriodMap& map, const Place& x, int periods, double residual, bool any) {
+    bool settle(PeriodMap& map, const Place& x, int periods, bool any) {
         MapStep step = map.step(x);
         if (const auto rest = step.moved ? rest_beside(x, step) : std::nullopt) {
             if (!whole().step(*rest).moved) return stand(rest_of_run().value_or(*rest));
@@ -171,7 +171,6 @@ private:
         if (!motion.stable && !any) return false;
         facts_ = std::move(motion);
         facts_.maps = maps;
-        facts_.residual = residual;
         if (!map.is_half()) facts_.symmetric = periods == 1 && is_symmetric(x, PeriodMap::size_of(x, step));
         return true;
     }

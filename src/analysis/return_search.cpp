@@ -347,7 +347,6 @@ private:
         SteadyMotion& facts = s_.facts_;
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
-        facts.residual = off(m, 0);
         facts.stable = true;
         if (beside_ > 0) run_ = s_.runs_.go_on(run_, t_, t_ - beside_ + length_, motion::Grid::none());
         if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
@@ -465,7 +464,6 @@ bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) 
     facts.maps = facts_.maps;
     facts.periods = forced ? found.returns : 1;
     facts.period = forced ? found.returns * question().repeats.period : found.period;
-    facts.residual = found.residual;
     facts.stable = true;
     constexpr double smooth = 0.01;
     const bool alone = forced && !chart_.any_goes_round();

@@ -92,8 +92,8 @@ struct SteadyMotion {
     std::pair<double, double> rest;  ///< range of angles at which it may rest, if it adheres
     double growth = 0;               ///< growth of the amplitude in a period of M
     int maps = 0;                    ///< number of periods that were run
-    /// residual of the fixed point, in amplitudes; of status none by how much the last period failed to repeat itself
-    double residual = 0;
+    /// of status none: greatest change of the last periods from earlier ones, in amplitudes, if they nearly repeat
+    std::optional<double> change = {};
     model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
     std::vector<BodyMotion> bodies = {};                     ///< set for motions found by returns

@@ -331,11 +331,11 @@ private:
         if (timeless_) {
             say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
         } else {
-            const bool settles = motion_.residual > 0 && motion_.residual < 1e-2;
             say("No motion of up to 32 periods of M was found within {} periods: {}.", motion_.maps,
-                settles ? fmt::format("the motion still settles, and changes by {:.2g} of its amplitude in a period",
-                                      motion_.residual)
-                        : "the motion is irregular, or it settles very slowly");
+                motion_.change
+                    ? fmt::format("the motion nearly repeats itself, but changes by {:.2g} of its amplitude each time",
+                                  *motion_.change)
+                    : "the motion is irregular, or it settles very slowly");
         }
         if (!sampled) return;
         if (timeless_) {

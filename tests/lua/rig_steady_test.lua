@@ -393,7 +393,7 @@ test("the period of functions that are read is found for named bodies, belts and
     near(sys:steady { M = M, base = belt }.period, 2 * math.pi / 1.3, 1e-12)
 end)
 
-test("where no steady motion is found, the answer says whether the motion still settles", function()
+test("where no steady motion is found, the answer says whether the motion nearly repeats itself", function()
     local function told(a, b, link, M, omega)
         local s = system { bodies = { a = a, b = b }, links = { l = link } }:steady { M = M, omega = omega }
         equal(s.status, "none")
@@ -403,7 +403,7 @@ test("where no steady motion is found, the answer says whether the motion still 
     local stops, pawl = { lower = -0.85, upper = 0.56 }, { "a", "b", friction = friction.freewheel { Rd = 0.01 } }
     local square = function(t) return math.sin(1.67 * t) > 0 and 1 or -1 end
     local slow = told({ I = 1, k = 1.52, C = 0.02, walls = stops }, { I = 1, k = 2.71, C = 0.23 }, pawl, { a = square, b = sine(1.67, 0.9) }, 1.67)
-    says(slow, "the motion still settles, and changes by 4.6e-05 of its amplitude in a period")
+    says(slow, "the motion nearly repeats itself, but changes by 4.6e-05 of its amplitude each time")
     local stop = { "a", "b", walls = { lower = -0.54, upper = 10, stiffness = 282.01 } }
     local irregular = told({ I = 1, k = 2.93, C = 0.02 }, { I = 1, k = 2.33, C = 0.03, Rd = 0.06 }, stop, { a = sine(1.52) }, 1.52)
     says(irregular, "the motion is irregular, or it settles very slowly")
