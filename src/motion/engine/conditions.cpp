@@ -293,8 +293,9 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         const bool soon_again = (several || last_.function == function) && here.t - last_.t <= soon * unit_;
         const bool rises = beyond > function->decision(step);
         const bool back = soon_again && last_.step == step && last_.rises != rises;
-        const double earlier = last_.t < here.t ? last_.t : last_.earlier,
-                     since = back && last_.t == here.t ? 0 : here.t - earlier;
+        const double earlier = last_.t < here.t ? last_.t : last_.earlier;
+        // A motion that crosses back at the same instant stands on the surface.
+        const double since = back && last_.t == here.t ? 0 : here.t - earlier;
         chatter.crossed(back);
         last_ = {function, step, rises, here.t, within_, earlier, of};
         const double before = function->value(here);
