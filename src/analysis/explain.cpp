@@ -351,7 +351,7 @@ private:
         const bool stands = first.stuck || motion::belt_from(belt_, run_.t_start) == 0;
         const bool has_torque =
             y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
-        if (first.stuck) {
+        if (first.stuck && first.lasts() > 0) {
             add(" and stuck {}", is_link_ ? "together" : on_belt_ && !at_wall(y.theta) ? "to the belt" : "there");
         }
         if (has_torque && first.stuck && at_wall(y.theta)) {
@@ -360,7 +360,9 @@ private:
             const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
             add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
         }
-        if (first.stuck && first.ended_by) {
+        if (first.stuck && first.ended_by && !(first.lasts() > 0)) {
+            add("; {} at once.", slip(*first.ended_by, has_torque));
+        } else if (first.stuck && first.ended_by) {
             add("{} until t = {}, when {}.", has_torque ? "," : "", at(first.to), slip(*first.ended_by, has_torque));
         } else {
             add(".");

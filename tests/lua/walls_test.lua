@@ -268,4 +268,15 @@ test("bounces that keep their speed end where they are lower than the rounding o
     closes(run)
 end)
 
+test("a mass that an impact at the start sets in motion slips then", function()
+    local bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 2, Rd = 0.3 } }
+    local rig = system { bodies = bodies, links = { stop = { "a", "b", walls = { lower = -0.5, upper = 1, restitution = 0.5 } } } }
+    local run = rig:simulate { theta0 = { a = -0.5 }, velocity0 = { a = -1 }, t_end = 8 }
+    local slips = of_kind(run.b, "slip").t
+    equal(#slips, 1)
+    equal(slips[1], 0.0)
+    says(run.b, "with velocity 0; it slipped at once.")
+    says(run.b, "stuck for 5.1364 of 8 time units") -- from its only stop, at 2.8636
+end)
+
 finish()

@@ -219,7 +219,7 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
     const bool held = how.way == Motion::stuck || how.riding;
     how.leaving = false;
     if (held || how.way != way) {
-        const bool told = begun() && (why == Because::belt || (why == Because::impact && j != at));
+        const bool told = why == Because::belt ? begun() : why == Because::impact && j != at;
         if (held && told) tell(EventKind::slip, j);
         if (!held && why == Because::belt) tell(EventKind::turn, j);
         contacts_.slide(mechanics_, now_, j, way, false);
