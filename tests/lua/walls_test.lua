@@ -279,4 +279,16 @@ test("a mass that an impact at the start sets in motion slips then", function()
     says(run.b, "stuck for 5.1364 of 8 time units") -- from its only stop, at 2.8636
 end)
 
+test("a body that another presses against a wall comes to rest, though the stop between them keeps its speed", function()
+    local bodies = { b = { I = 0.5, k = 0.5, C = 0.1 }, c = { I = 0.2, C = 0.5, walls = { lower = -0.5, upper = 0.5, restitution = 0.8 } } }
+    local stop = { "b", "c", walls = { lower = -0.2, upper = 1, restitution = 1 } }
+    local start = { theta0 = { b = 0.1, c = -0.1 }, velocity0 = { b = -1, c = -1 } }
+    local task = { M = { b = function(t) return 0.3 * math.floor(t) end }, t_end = 20 }
+    local run = system { bodies = bodies, links = { stop = stop } }:simulate(merged(start, task))
+    assert(#run.events < 3000)
+    near(run.b.theta[#run], 1.5, 1e-15)
+    near(run.c.theta[#run], 0.5, 1e-15)
+    closes(run)
+end)
+
 finish()

@@ -5,7 +5,11 @@
 
 namespace dinal::motion::engine {
 
-Walls::Walls(const model::System& system) : origin(system.joints.size(), 0), reach(system.joints.size(), 0) {
+Walls::Walls(const model::System& system)
+    : origin(system.joints.size(), 0),
+      reach(system.joints.size(), 0),
+      impact(system.joints.size(), -model::never),
+      low(system.joints.size(), 0) {
     for (const model::Joint& joint : system.joints) any |= joint.any_walls() != nullptr;
 }
 

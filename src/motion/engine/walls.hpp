@@ -16,6 +16,9 @@ struct Walls {
     bool any = false;
     /// for each joint: angle of the wall it hit last, and greatest distance from there since
     std::vector<double> origin, reach;
+    /// for each joint: time of its last impact, and the number of successive bounces too low to be seen
+    std::vector<double> impact;
+    std::vector<int> low;
     std::pair<std::size_t, int> last_hit{0, 0};  ///< joint and side of the wall
     double instant = model::never, fastest = 0;  ///< time of the last impact, and the fastest one at about that time
 
