@@ -667,4 +667,28 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
     end
 end)
 
+test("a preload and a clutch that stop a body together let it go at the sum of their limits", function()
+    local bodies = { a = { I = 2, Rd = 3 }, b = { I = 0.2, C = 0.1, spring = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end } }
+    for _, velocity in ipairs { 0, 1, 2, -2 } do
+        for _, rate in ipairs { 0.1, -0.1 } do
+            local rig = system { bodies = bodies, links = { clutch = { "a", "b", Rd = 0.2, Re = 0.5 } } }
+            local run = rig:simulate { M = { b = function(t) return rate * t end }, velocity0 = { b = velocity }, t_end = 20 }
+            local slips = of_kind(run.clutch, "slip").t
+            near(slips[#slips], 15, 1e-12)
+            closes(run)
+        end
+    end
+end)
+
+test("two bodies that a preload holds together stop at once, and stay together", function()
+    local bodies = { a = { I = 0.1, C = 0.2 }, b = { I = 0.1, friction = friction.stribeck { Rd = 0.2, Re = 0.2, speed = 1 } } }
+    local preload = { "a", "b", spring = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end }
+    local start = { theta0 = { a = 0.1, b = 0.2 }, velocity0 = { b = 0.5 } }
+    local run = system { bodies = bodies, links = { preload = preload } }:simulate(merged(start, { t_end = 10 }))
+    near(run.preload.theta[#run], 0, 1e-15)
+    near(run.a.velocity[#run], 0, 1e-15)
+    equal(#of_kind(run.b, "stick"), 1)
+    closes(run)
+end)
+
 finish()

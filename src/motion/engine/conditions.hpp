@@ -47,7 +47,7 @@ public:
     void decide(const Moment& at, const Mode& mode, const Segment& last);
     /// Returns whether all conditions have decisions that certainly hold while the motion is within these ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges, const Moment& from);
-    bool slides() const { return slides_.any(); }
+    const Slides& slides() const { return slides_; }
     /// Ends the stretch at the first change of a condition, if it precedes the present end.
     void watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending);
 

@@ -382,11 +382,11 @@ void Decider::report(std::size_t j) {
     }
 }
 
-/// Returns whether other joints hold its bodies together, so that it cannot slip. Two joints held by belts of different
-/// velocities do slip.
+/// Returns whether other joints, or surfaces on which loads jump, hold its bodies together, so that it cannot slip. Two
+/// joints held by belts of different velocities do slip.
 bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = joint_at(joint);
-    if (!frame.keeps(joint)) return false;
+    if (!frame.keeps(joint) && !by_.slides.keep_slip(joint, frame, now().here())) return false;
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;

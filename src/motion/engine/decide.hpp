@@ -9,6 +9,7 @@
 #include "motion/engine/balance.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/frames.hpp"
+#include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"
 
 namespace dinal::motion::engine {
@@ -48,6 +49,7 @@ struct Evaluation {
     Frames& frames;
     Balances& balances;
     Projection& projection;
+    const Slides& slides;
     const Segment& last;  ///< the stretch that ended now
     DecisionRoom& room;
     double unit;  ///< time scale of the motion

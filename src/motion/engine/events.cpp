@@ -61,7 +61,7 @@ bool Engine::cross(const Ending& ending) {
         const std::vector<SlideChange>& begun = held->changes.slides;
         recorder_->add_jump(now_.t.hi, begun.front().joint.value_or(0), {.input = held->work});
         for (const SlideChange& change : begun) recorder_->tell_slide(now_, change);
-        goes_on = true;
+        return restart_contacts(Because::impact);
     }
     return goes_on ? decide(true) : fail(Outcome::chattering);
 }
@@ -137,7 +137,8 @@ bool Engine::turn_slider(const Ending& ending) {
 
 /// Applies the decision about contacts and reports it.
 bool Engine::decide(bool told, std::optional<Cause::Released> released) {
-    const Evaluation by{mechanics_, *frames_, *balances_, projection_, segment_, room_, pace_.unit};
+    const Evaluation by{mechanics_, *frames_, *balances_, projection_, conditions_->slides(),
+                        segment_,   room_,    pace_.unit};
     const Cause cause{released, told && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);

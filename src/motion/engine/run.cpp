@@ -178,7 +178,7 @@ bool Engine::advance() {
 
 /// Takes steps without events, which need no segment.
 bool Engine::take_plain_steps() {
-    if (!plain_steps_ || pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides())
+    if (!plain_steps_ || pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides().any())
         return false;
     double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
     for (const model::WantedEvent& event : problem_.drive.events) {

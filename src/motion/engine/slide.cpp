@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "algebra/decompositions.hpp"
+
 namespace dinal::motion::engine {
 
 using Which = Piecewise::Slide::Side;
@@ -200,21 +202,50 @@ std::optional<Slides::Sliding> Slides::owner_of(Piecewise& function, double t) c
     return Sliding{.function = &function, .joint = joint};
 }
 
+/// Returns the derivatives of a slide's margin: by time, and by each variable of the state.
+std::vector<double> Slides::gradient(const Piecewise& function, const Moment& at) {
+    std::vector<double> rates(at.y.size(), 0), slopes{function.margin(at, rates).second};
+    for (double& rate : rates) {
+        rate = 1;
+        slopes.push_back(function.margin(at, rates).second - slopes.front());
+        rate = 0;
+    }
+    return slopes;
+}
+
 /// Returns whether two functions slide along the same surface: whether the gradients of their margins are parallel.
 bool Slides::is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at) {
     constexpr double nearly = 1 - 1e-12;
-    std::vector<double> rates(at.y.size(), 0);
-    const double of_time = one.margin(at, rates).second, of_time_of_other = other.margin(at, rates).second;
-    double square = of_time * of_time, square_of_other = of_time_of_other * of_time_of_other;
-    double product = of_time * of_time_of_other;
-    for (double& rate : rates) {
-        rate = 1;
-        const double slope = one.margin(at, rates).second - of_time;
-        const double slope_of_other = other.margin(at, rates).second - of_time_of_other;
-        rate = 0;
-        square += slope * slope, square_of_other += slope_of_other * slope_of_other, product += slope * slope_of_other;
+    const std::vector<double> slopes = gradient(one, at), others = gradient(other, at);
+    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+        return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    };
+    return std::fabs(product(slopes, others)) >=
+           nearly * std::sqrt(product(slopes, slopes)) * std::sqrt(product(others, others));
+}
+
+bool Slides::keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const {
+    const std::size_t n = mechanics_.bodies();
+    if (sliding_.empty()) return false;
+    const auto groups = static_cast<Eigen::Index>(frame.groups());
+    Eigen::MatrixXd held = Eigen::MatrixXd::Zero(groups, static_cast<Eigen::Index>(sliding_.size()));
+    for (std::size_t k = 0; k < sliding_.size(); ++k) {
+        const std::vector<double> slopes = gradient(*sliding_[k].function, at);
+        const std::size_t first = sliding_[k].of_place ? 1 : 1 + n;
+        bool moves = false;
+        for (std::size_t i = 0; i < slopes.size(); ++i) {
+            moves = moves || (slopes[i] != 0 && (i < first || i >= first + n));
+        }
+        for (std::size_t i = 0; i < n && !moves; ++i) {
+            for (const auto& [group, by] : frame.bodies[i]) {
+                held(static_cast<Eigen::Index>(group), static_cast<Eigen::Index>(k)) += by * slopes[first + i];
+            }
+        }
     }
-    return std::fabs(product) >= nearly * std::sqrt(square) * std::sqrt(square_of_other);
+    Eigen::VectorXd slip = Eigen::VectorXd::Zero(groups);
+    for (const auto& [group, by] : frame.joints[joint]) slip(static_cast<Eigen::Index>(group)) += by;
+    const Eigen::VectorXd shares = algebra::solve_least_squares(held, slip);
+    return (held * shares - slip).norm() <= hardly * slip.norm();
 }
 
 /// Moves velocities and states, at a place velocities and angles, onto the surface, along the difference of both sides'

@@ -45,6 +45,9 @@ public:
     /// Starts a slide along a condition that was crossed repeatedly. Empty if the two sides do not drive the motion
     /// back, or, at a place, if the passages do not become shorter or the contact there sticks.
     std::optional<Begun> begin(Piecewise& function, const Crossing& crossing, Now& now);
+    /// Returns whether the slides hold the slip of a joint: whether it depends on what this frame holds and on surfaces
+    /// that stand still, and on nothing that moves.
+    [[nodiscard]] bool keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const;
     /// Sets the mode of contacts to evaluate with.
     void follow(const Mode& mode) { mode_ = mode; }
     /// Ends slides if sticking contacts now hold the velocities of the surface, so that the load does not move them.
@@ -112,6 +115,7 @@ private:
     [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
     [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
     [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
+    [[nodiscard]] static std::vector<double> gradient(const Piecewise& function, const Moment& at);
     [[nodiscard]] static bool is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at);
     [[nodiscard]] std::vector<std::pair<Piecewise*, Piecewise>> all_functions(double t);
     [[nodiscard]] std::vector<Sliding>::iterator slide_of(const Piecewise& function);
