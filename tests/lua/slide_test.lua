@@ -649,6 +649,7 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
         function(x) return x >= 0 and 1 or -1 end,
         function(x) return x <= 0 and -1 or 1 end,
         function(x) return (x > 0 and 1 or 0) - (x < 0 and 1 or 0) end,
+        function(x) return math.abs(x) * x + (x > 0 and 1 or x < 0 and -1 or 0) end, -- a kink beside the jump
     }
     for n, sign in ipairs(signs) do
         for _, load in ipairs { -0.9, -0.5, 0, 0.5, 0.9 } do

@@ -133,7 +133,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     double t = at.t;
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
-    if (forgotten_ && last_.t == at.t) {
+    if (forgotten_ && crossed_at_ == at.t) {
         // A condition was crossed here, and then an action changed the state: the rounding of the angles must not lead
         // it back.
         constexpr double past_rounding = 1e-12;
@@ -161,7 +161,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
-        const bool just_crossed = last_.function == &function && last_.t == at.t && (last_.of & of_leaving) != 0;
+        const bool just_crossed = has_just_crossed(function, of_leaving, at.t);
         const bool known = !forgotten_ && slides_.just_left(function, at.t);
         const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
         function.decide({t, at.side, y}, asked);
@@ -189,6 +189,15 @@ void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint
         const bool passes = std::fabs(margins[c]) < next_to_none * std::fabs(then[c]);
         if (passes && (function.conditions()[c].of & again) != 0) return function.decide(later, again);
     }
+}
+
+/// Returns whether a condition on one of these arguments was crossed at this time.
+bool Conditions::has_just_crossed(const Piecewise& function, std::uint64_t arguments, double now) const {
+    if (crossed_at_ != now) return false;
+    const auto& conditions = function.conditions();
+    return std::any_of(conditions.begin(), conditions.end(), [&](const auto& each) {
+        return (each.of & arguments) != 0 && last_of(function, each.step).t == now;
+    });
 }
 
 bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
@@ -235,8 +244,9 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
         }
         round(segment.times[0] * ulps);
         // The margin of a condition that was just crossed may be as large as it was then, also on a shorter stretch.
-        for (std::size_t c = 0; c < count && last_.function == &function && last_.t == now; ++c) {
-            if (function.conditions()[c].step == last_.step) rounded[c] = std::max(rounded[c], last_.within);
+        for (std::size_t c = 0; c < count && crossed_at_ == now; ++c) {
+            const Last& last = last_of(function, function.conditions()[c].step);
+            if (last.t == now) rounded[c] = std::max(rounded[c], last.within);
         }
         search.watch(function, values, rounded);
     });
@@ -266,7 +276,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
     const auto [step, beyond, of] = function.conditions()[condition];
     const bool of_place = is_of_place(function, of);
-    return last_.function == &function && last_.t == now && last_.step == step && of_place;
+    return last_of(function, step).t == now && of_place;
 }
 
 Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& chatter) {
@@ -290,14 +300,17 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         }
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool several = ending.conditions.size() > 1;
-        const bool soon_again = (several || last_.function == function) && here.t - last_.t <= soon * unit_;
+        const Last last = last_of(*function, step);
+        const double any_before = several ? crossed_at_ : crossed_.try_emplace(function, -model::never).first->second;
+        const bool soon_again = here.t - any_before <= soon * unit_;
         const bool rises = beyond > function->decision(step);
-        const bool back = soon_again && last_.step == step && last_.rises != rises;
-        const double earlier = last_.t < here.t ? last_.t : last_.earlier;
+        const bool back = here.t - last.t <= soon * unit_ && last.rises != rises;
+        const double earlier = last.t < here.t ? last.t : last.earlier;
         // A motion that crosses back at the same instant stands on the surface.
-        const double since = back && last_.t == here.t ? 0 : here.t - earlier;
+        const double since = back && last.t == here.t ? 0 : here.t - earlier;
         chatter.crossed(back);
-        last_ = {function, step, rises, here.t, within_, earlier, of};
+        last_[{function, step}] = {rises, here.t, within_, earlier};
+        crossed_[function] = crossed_at_ = here.t;
         const double before = function->value(here);
         function->cross(condition);
         const double jump = std::fabs(function->value(here) - before);

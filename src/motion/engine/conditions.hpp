@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -102,15 +103,22 @@ private:
     double unit_;
     bool any_ = false, samples_, forgotten_ = true;
     double crossing_at_ = -model::never;
-    struct {
-        const Piecewise* function = nullptr;
-        std::size_t step = 0;
+    /// The last crossing of a condition.
+    struct Last {
         bool rises = false;              ///< whether the decision became greater
         double t = -model::never;        ///< the time at which it changed
         double within = 0;               ///< greatest |margin| that counted as zero
         double earlier = -model::never;  ///< time of the previous crossing that was not at t
-        std::uint64_t of = 0;            ///< the arguments on which the condition depends, a bit each
-    } last_;
+    };
+    const Last& last_of(const Piecewise& function, std::size_t step) const {
+        static const Last none;
+        const auto found = last_.find({&function, step});
+        return found == last_.end() ? none : found->second;
+    }
+    bool has_just_crossed(const Piecewise& function, std::uint64_t arguments, double now) const;
+    std::map<std::pair<const Piecewise*, std::size_t>, Last> last_;  ///< for each condition by its step
+    std::map<const Piecewise*, double> crossed_;                     ///< for each function the last time
+    double crossed_at_ = -model::never;                              ///< time of the last crossing of all
     double within_ = 0;       ///< the same for the conditions about to be crossed
     int small_in_a_row_ = 0;  ///< number of successive small jumps
     double greatest_ = 0;     ///< greatest value or jump so far
