@@ -97,4 +97,16 @@ test("a spring that jumps does what the same function does in M, and holds the m
     near(held.b:at(60), 0.1, 1e-6)
 end)
 
+test("the energy of a spring like a staircase is its integral, also where samples are symmetric", function()
+    local sys = system { I = 2, k = 0, spring = function(x) return 0.5 * math.floor(x / 0.1) end }
+    local function integral(x)
+        local n = math.floor(x / 0.1)
+        return 0.025 * n * (n - 1) + 0.5 * n * (x - 0.1 * n)
+    end
+    for _, theta in ipairs { 0.05, 0.15, 0.475, 0.95, 1.0393, -0.05, -1.318, 1.52 } do
+        local start = sys:simulate { theta0 = theta, t_end = 1e-9 }:energy().start
+        near(start.spring, integral(theta), 1e-13)
+    end
+end)
+
 finish()

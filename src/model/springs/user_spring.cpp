@@ -14,8 +14,10 @@ constexpr std::array<double, 4> inner_nodes = {0, 0.4688487934707142138037718819
                                                1};
 constexpr std::array<double, 4> inner_weights = {0.487619047619047619047619047619, 0.43174538120986262341787102228,
                                                  0.27682604736156594801070040629, 0.047619047619047619047619047619};
-/// The limit of bisections around a kink; the remaining error is negligible.
-constexpr int most_halvings = 48;
+/// The limit of divisions around a kink; the remaining error is negligible.
+constexpr int most_divisions = 64;
+/// Where an interval is divided: off its middle, because the samples of a staircase may be symmetric about that.
+constexpr double first_part = 0.45;
 
 double over(terms::UserFunction& torque, double a, double b) {
     const double middle = a + (b - a) / 2, half = (b - a) / 2;
@@ -27,14 +29,15 @@ double over(terms::UserFunction& torque, double a, double b) {
     return half * sum;
 }
 
-/// Adaptive quadrature: compares the whole with its two halves and bisects again if they differ by more than `allowed`.
-double refined_over(terms::UserFunction& torque, double a, double b, double whole, double allowed, int halvings) {
-    const double middle = a + (b - a) / 2;
-    const double left = over(torque, a, middle), right = over(torque, middle, b);
+/// Adaptive quadrature: compares the whole with its two parts and divides again if they differ by more than `allowed`.
+/// This does not shrink with the parts: the rounding of the torque, which does not fade, would divide them all.
+double refined_over(terms::UserFunction& torque, double a, double b, double whole, double allowed, int divisions) {
+    const double within = a + first_part * (b - a);
+    const double left = over(torque, a, within), right = over(torque, within, b);
     const double sum = left + right;
-    if (!(std::fabs(sum - whole) > allowed) || halvings == 0) return sum;
-    return refined_over(torque, a, middle, left, allowed / 2, halvings - 1) +
-           refined_over(torque, middle, b, right, allowed / 2, halvings - 1);
+    if (!(std::fabs(sum - whole) > allowed) || divisions == 0) return sum;
+    return refined_over(torque, a, within, left, allowed, divisions - 1) +
+           refined_over(torque, within, b, right, allowed, divisions - 1);
 }
 
 }  // namespace
@@ -43,7 +46,7 @@ double UserSpring::energy(double theta) const {
     if (theta == 0) return 0;
     const double whole = over(*function, 0, theta);
     const double size = std::fabs(theta) * std::fabs(torque(theta)) + std::fabs(whole);
-    return refined_over(*function, 0, theta, whole, 2 * std::numeric_limits<double>::epsilon() * size, most_halvings);
+    return refined_over(*function, 0, theta, whole, std::numeric_limits<double>::epsilon() / 2 * size, most_divisions);
 }
 
 }  // namespace dinal::model::springs
