@@ -291,4 +291,12 @@ test("a body that another presses against a wall comes to rest, though the stop 
     closes(run)
 end)
 
+test("bounces end where a load jumps at the wall itself", function()
+    local sys = system { I = 0.1, k = 0, C = 0.5, Rd = 0.1, walls = { lower = -1, upper = 2, restitution = 1 } }
+    local run = sys:simulate { M = function(_, theta) return math.abs(theta) < 2 and 2 or 0 end, theta0 = 0.1, t_end = 5 }
+    assert(#run.events < 2000)
+    near(run.theta[#run], 2, 1e-12)
+    near(run.velocity[#run], 0, 1e-6)
+end)
+
 finish()

@@ -67,10 +67,10 @@ bool Engine::hit(std::size_t joint, int wall) {
         return goes_on();
     }
     tell(EventKind::impact, joint);
-    constexpr int most_low = 32;
+    constexpr int most_low = 32, few_heights = 64;
     const double unresolved = 4 * rounding * (std::fabs(place) + own.size(now_.y));
     const double since = now_.t.hi - std::exchange(walls_.impact[joint], now_.t.hi);
-    walls_.low[joint] = before * since <= unresolved ? walls_.low[joint] + 1 : 0;
+    walls_.low[joint] = before * since <= few_heights * unresolved ? walls_.low[joint] + 1 : 0;
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
     if (!(now_.t.hi - walls_.instant <= last_bounces * pace)) walls_.fastest = 0;
     walls_.instant = now_.t.hi, walls_.fastest = std::max(walls_.fastest, before);
@@ -88,7 +88,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
         // changes nothing.
-        // A bounce lower than the rounding of the angles is no motion. Between two walls, only the past ones tell.
+        // A bounce lower than the rounding of the angles is no motion. Between two walls, or where a load jumps beside
+        // the wall, only the past ones tell.
         const bool unseen = e * before * bounces->once <= unresolved || walls_.low[joint] > most_low;
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace || unseen;
         rest = bounces->all < model::never ? bounces->all : bounces->once;
