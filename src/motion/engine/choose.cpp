@@ -58,11 +58,17 @@ void Engine::set_pace() {
     chatter_ = {now_.t.hi, pace_.unit};
 }
 
-void Engine::choose(const Frame& frame) {
-    double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
+/// Returns the time of the next known break, also of a user's event.
+double Engine::next_break() const {
+    double next = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
     for (const model::WantedEvent& event : problem_.drive.events) {
-        breaks = std::min(breaks, event.when->next_break(now_.t.hi));
+        next = std::min(next, event.when->next_break(now_.t.hi));
     }
+    return next;
+}
+
+void Engine::choose(const Frame& frame) {
+    const double breaks = next_break();
     double limit = std::min(problem_.window.end, breaks);
     if (problem_.step > 0) {
         // A break within rounding of a step's end counts as that end.

@@ -56,6 +56,7 @@ private:
     void set_pace();
     void choose(const Frame& frame);
     double longest_under_friction(const Frame& frame);
+    double next_break() const;
     double until_wall(const Frame& frame);
     void again(Flow::Attempt attempt);
 

@@ -180,13 +180,9 @@ bool Engine::advance() {
 bool Engine::take_plain_steps() {
     if (!plain_steps_ || pace_.bad_time < model::never || !plain_steps_->may_begin(now_) || conditions_->slides().any())
         return false;
-    double breaks = std::min(mechanics_.next_break(now_.t.hi), breaks_.next());
-    for (const model::WantedEvent& event : problem_.drive.events) {
-        breaks = std::min(breaks, event.when->next_break(now_.t.hi));
-    }
     const std::vector<double>& departing = now_.departing(problem_.system, scratch_.departing);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
-    if (!plain_steps_->take({now_, departing, contacts_, walls_, users_, *conditions_, *recorder_}, breaks)) {
+    if (!plain_steps_->take({now_, departing, contacts_, walls_, users_, *conditions_, *recorder_}, next_break())) {
         return false;
     }
     walls_.follow(problem_.system, now_);

@@ -14,6 +14,8 @@ namespace {
 // In units of the pace. Torques hardly change in the first time; crossings closer than the second are lost in the
 // rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
+// If they shrink more slowly, friction is not what stops the body.
+constexpr double most_passages = 1000;
 constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 
 }  // namespace
@@ -36,6 +38,7 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
     const bool seen =
         passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > clearly_seen * of_rounding * size;
+    if (seen && passages->all > most_passages * passages->leg) return Settles::no;
     if (seen && passages->all > last_passages * pace) return Settles::soon;
     recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
     const Motion way = model::motion_of(speed);
@@ -109,7 +112,7 @@ bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t j
 void Engine::wait(double rest) {
     const auto velocities = now_.y.begin() + static_cast<std::ptrdiff_t>(n());
     if (std::any_of(velocities, velocities + static_cast<std::ptrdiff_t>(n()), [](double v) { return v != 0; })) return;
-    if (!(rest > 0) || !(now_.t.after(rest) < std::min(mechanics_.next_break(now_.t.hi), problem_.window.end))) return;
+    if (!(rest > 0) || !(now_.t.after(rest) < std::min(next_break(), problem_.window.end))) return;
     std::vector<double> rates(mechanics_.states());
     mechanics_.rates(now_.here(), rates.data(), &now_.mode);
     for (std::size_t k = 0; k < rates.size(); ++k) now_.y[2 * n() + k] += rest * rates[k];
