@@ -668,6 +668,39 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
     end
 end)
 
+test("a feedback that begins exactly at its limit holds like dry friction", function()
+    local signs = {
+        function(v) return v > 0 and 1 or v < 0 and -1 or 0 end,
+        function(v) return v > 0 and 1 or -1 end,
+        function(v) return v < 0 and -1 or 1 end,
+    }
+    for _, sign in ipairs(signs) do
+        for _, m in ipairs { 0.1, 0.5 } do
+            for _, load in ipairs { m, -m } do
+                for _, case in ipairs { { load, 0 }, { 0, load } } do -- by the load, by the spring
+                    local function f(t) return case[1] + math.sin(t) end
+                    local start = { theta0 = case[2], t_end = 20, dt = 0.5 }
+                    local run = system { I = 0.5, k = 1, C = 0.1 }:simulate(merged(start, { M = function(t, _, v) return f(t) - m * sign(v) end }))
+                    local dry = system { I = 0.5, k = 1, C = 0.1, Rd = m }:simulate(merged(start, { M = f }))
+                    near(run.theta, dry.theta, 1e-11)
+                end
+            end
+        end
+    end
+end)
+
+test("a preload holds a body whose friction vanishes there or varies", function()
+    local function jump(x) return x > 0 and 1 or -1 end
+    local varies = system { I = 1, k = 4, C = 0.2, Rd = function(t) return 0.2 * (1 + 0.5 * math.sin(t)) end, spring = function(x) return math.abs(x) * x + 0.5 * jump(x) end }
+    local run = varies:simulate { theta0 = 0.5, velocity0 = 0.5, t_end = 20 }
+    equal(run.theta[#run], 0.0)
+    closes(run)
+    local vanishes = system { I = 0.1, k = 0.5, C = 0.5, Rd = function(_, theta) return 0.5 * math.abs(theta) end, spring = function(x) return 2 * jump(x) end }
+    local slow = vanishes:simulate { velocity0 = 1e-3, t_end = 5 }
+    assert(#slow.events < 30000)
+    near(slow.theta[#slow], 0, 1e-15)
+end)
+
 test("a preload and a clutch that stop a body together let it go at the sum of their limits", function()
     local bodies = { a = { I = 2, Rd = 3 }, b = { I = 0.2, C = 0.1, spring = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end } }
     for _, velocity in ipairs { 0, 1, 2, -2 } do

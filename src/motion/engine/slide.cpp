@@ -71,6 +71,11 @@ bool Slides::Sides::drive_back() const {
     return own.rate < -least && beyond.rate > least;
 }
 
+bool Slides::Sides::at_limit() const {
+    const double least = clearly_apart * (std::fabs(own.rate) + std::fabs(beyond.rate));
+    return own.rate <= least && beyond.rate >= -least && differ();
+}
+
 std::vector<double> Slides::Sides::mixed() const {
     const double share = own.rate / (own.rate - beyond.rate);
     std::vector<double> rates = own.rates;
@@ -324,6 +329,15 @@ std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const s
     return sides;
 }
 
+bool Slides::drive_back(const Sliding& of, const Now& now, const Sides& sides) const {
+    if (sides.drive_back() || !sides.at_limit()) return sides.drive_back();
+    const double later = 1e3 * near * unit_;
+    const std::vector<double> rates = sides.mixed();
+    std::vector<double> y = now.y;
+    for (std::size_t k = 0; k < y.size(); ++k) y[k] += later * rates[k];
+    return both(of, {now.t.hi + later, engine::Side::at, y}).drive_back();
+}
+
 bool Slides::stands(Piecewise& function, const Now& now) const {
     const auto owner = owner_of(function, now.t.hi);
     return owner && owner->joint && sticks(*owner->joint, now);
@@ -338,7 +352,7 @@ std::optional<Slides::Sides> Slides::meet(Sliding& of, const Now& now, const std
     for (const model::Motion way : {model::Motion::forward, model::Motion::backward}) {
         if (holds) mode_.friction[*of.joint].way = way;
         auto sides = decide(of, now, rates);
-        if (!sides || !sides->drive_back()) continue;
+        if (!sides || !drive_back(of, now, *sides)) continue;
         if (!holds) return sides;
         const std::vector<double> mixed = sides->mixed();
         double slip = -belt_rate(*of.joint, now.here()), across = 0;
@@ -393,7 +407,7 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& 
     Begun begun;
     put_on_surface(*owner, *first, now, begun.work);
     const auto sides = decide(*owner, now, first->mixed());
-    if (!sides || !sides->drive_back()) return no();
+    if (!sides || !drive_back(*owner, now, *sides)) return no();
     sliding_.push_back(*owner);
     owner->tell(true, begun.changes.slides);
     owner->each([&](Piecewise& each) { begun.changes.functions.push_back(&each); });

@@ -79,6 +79,8 @@ private:
         /// Returns whether the load from beyond drives the motion back more than that of the own side.
         [[nodiscard]] bool differ() const;
         [[nodiscard]] bool drive_back() const;
+        /// Returns whether one side neither drives the motion back nor away, to rounding, and the other one back.
+        [[nodiscard]] bool at_limit() const;
         /// Returns the rates of y on the surface.
         [[nodiscard]] std::vector<double> mixed() const;
     };
@@ -122,6 +124,8 @@ private:
     /// Makes the functions slide that jump along the condition that differs between both sides, with the pieces
     /// slightly later on a motion with these rates, or at present without rates. Empty if no condition differs.
     [[nodiscard]] std::optional<Sides> decide(Sliding& of, const Now& now, const std::vector<double>& rates);
+    /// Returns whether both sides drive the motion back now, or a little later if it is at the limit now.
+    [[nodiscard]] bool drive_back(const Sliding& of, const Now& now, const Sides& sides) const;
     /// Returns the sides if both drive the motion back, otherwise empty.
     [[nodiscard]] std::optional<Sides> meet(Sliding& of, const Now& now, const std::vector<double>& rates);
     void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
