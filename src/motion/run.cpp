@@ -9,8 +9,8 @@
 #include <iterator>
 #include <span>
 
+#include "model/functions.hpp"
 #include "model/laws/tabulated.hpp"
-#include "model/laws/user_law.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
@@ -118,7 +118,7 @@ namespace {
 
 /// Returns whether the law may jump, or be as steep as a jump, above speed 0.
 bool may_jump(const model::Friction& law) {
-    return law.as<model::laws::UserLaw>() != nullptr || law.as<model::laws::Tabulated>() != nullptr;
+    return model::user_law(law) != nullptr || law.as<model::laws::Tabulated>() != nullptr;
 }
 
 /// Says where the run switched endlessly, and the remedy.

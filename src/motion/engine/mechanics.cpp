@@ -6,7 +6,7 @@
 #include <map>
 
 #include "algebra/decompositions.hpp"
-#include "model/laws/user_law.hpp"
+#include "model/functions.hpp"
 #include "model/springs/user_spring.hpp"
 
 namespace dinal::motion::engine {
@@ -718,7 +718,7 @@ void Mechanics::each_function(const std::function<void(model::UserFunction&)>& c
     for (const model::OwnState& state : drive_.states) call(*state.rate);
     for (const Joint& joint : system_.joints) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) call(*spring->function);
-        if (const auto* law = joint.friction.law.as<laws::UserLaw>()) call(*law->function);
+        if (const auto* law = model::user_law(joint.friction.law)) call(*law->function);
         if (joint.friction.function != nullptr) call(*joint.friction.function);
     }
 }
