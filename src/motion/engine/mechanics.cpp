@@ -540,7 +540,7 @@ Mechanics::Asked Mechanics::asked_spring(std::size_t joint) const {
 
 Mechanics::Asked Mechanics::asked_law(std::size_t joint) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
-    const auto* user = friction.law.as<laws::UserLaw>();
+    const auto* user = model::user_law(friction.law);
     const auto& held = contacts_[joint].law;
     return {friction.function != nullptr ? friction.function.get()
             : user != nullptr            ? user->function.get()
