@@ -308,9 +308,9 @@ private:
     }
 
     std::string friction_text() const {
-        const model::Friction& law = system_.friction();
+        const model::Friction& law = joint_.friction.law;
         const bool stribeck = law.as<model::laws::Stribeck>() != nullptr;
-        const auto Rd = [&](model::Motion way) { return stribeck ? system_.kinetic_friction() : law.sliding(way, 0); };
+        const auto Rd = [&](model::Motion way) { return stribeck ? law.kinetic() : law.sliding(way, 0); };
         const auto Re = [&](model::Motion way) { return law.holding(way); };
         using enum model::Motion;
         if (joint_.friction.bending() != nullptr) return "friction of bristles, which neither stick nor slip";

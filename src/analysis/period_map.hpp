@@ -74,7 +74,6 @@ public:
 
     double length() const { return length_; }
     bool is_half() const { return sign_ < 0; }
-    double omega() const { return omega_; }  ///< scale of a Place; w0 if there is a spring
     /// The rounding of a place at which a linear spring and friction are in balance.
     double rounding_of_place() const;
     model::State state(const Place& place) const { return {place[0], place[1] * omega_}; }

@@ -161,7 +161,7 @@ std::string text_of_rig(const RunEnergy& energy) {
     const motion::Work& work = all.total.work;
     for (const auto& [name, value] :
          {std::pair("belt", work.belt), std::pair("base", work.base), std::pair("acts", work.acts)}) {
-        if (value != 0) text += fmt::format("  {} {:.6g} added by belt, base and acts\n", name, shown(value));
+        if (value != 0) text += fmt::format("  {} {:.6g} was added\n", name, shown(value));
     }
     if (work.impacts != 0) text += fmt::format("  impacts {:.6g} were lost\n", shown(work.impacts));
     text += fmt::format("  error {:.2g}, {:.1g} of {:.6g} that flowed", all.total.error(), all.closure(), all.flow);

@@ -91,15 +91,15 @@ std::vector<double> times_within(double from, double to) {
     return times;
 }
 
-/// A periodic, piecewise constant function as native terms: each difference from its first piece becomes a square wave.
-std::optional<model::Excitation> squares(lua::LuaFunction& function, double from, double to, double period) {
+/// A periodic, piecewise constant function as native terms, of which one jumps: two would have to jump at the same
+/// time, and do so within rounding only.
+std::optional<model::Excitation> levels(lua::LuaFunction& function, double from, double to, double period) {
     constexpr int most_pieces = 50;
     constexpr double least = 1e-9;  // fraction of a period by which rounding may shorten the last piece
     const double first = function.next_break(from), end = first + period * (1 - least);
     constexpr double far = 1000;  // number of the last period that is tested without an end
-    std::vector<model::Term> made;
+    model::Samples made{.t = {}, .M = {}, .interpolation = model::Interpolation::hold, .period = period};
     std::vector<double> tested;  // the middle of each piece in the first, second and last period
-    double base = 0, offset = 0;
     double next = first;
     while (next < end) {
         const double t = next;
@@ -110,21 +110,21 @@ std::optional<model::Excitation> squares(lua::LuaFunction& function, double from
         const auto terms = function.formula()->terms(t, middle);
         const bool one = terms && terms->components().size() == 1;
         const auto* level = one ? std::get_if<model::Constant>(&terms->components().front().term) : nullptr;
-        if (level == nullptr || made.size() > most_pieces) return {};
-        if (t == first) base = offset = level->amplitude;
-        const double half = (level->amplitude - base) / 2;
-        if (half == 0) continue;
-        made.emplace_back(model::Square{.amplitude = half, .period = period, .duty = width / period, .at = t});
-        offset += half;
+        if (level == nullptr || made.t.size() > most_pieces) return {};
+        made.t.push_back(t), made.M.push_back(level->amplitude);
     }
-    made.emplace_back(model::Constant{offset});
-    model::Excitation sum;
-    for (const model::Term& term : made) {
-        const auto wave = model::Excitation::make(term);
-        if (!wave) return {};
-        sum = sum + *wave;
+    std::optional<model::Excitation> found;
+    if (made.t.size() == 2) {  // a square wave is quicker
+        const double half = (made.M[0] - made.M[1]) / 2, duty = (made.t[1] - made.t[0]) / period;
+        const auto wave =
+            model::Excitation::make(model::Square{.amplitude = half, .period = period, .duty = duty, .at = made.t[0]});
+        const auto level = model::Excitation::make(model::Constant{made.M[0] - half});
+        if (wave && level) found = *wave + *level;
+    } else if (const auto all =
+                   model::Excitation::make(model::Polyline(std::make_shared<const model::Samples>(std::move(made))))) {
+        found = *all;
     }
-    return agree(*function.formula(), sum, tested) ? std::optional(sum) : std::nullopt;
+    return found && agree(*function.formula(), *found, tested) ? found : std::nullopt;
 }
 
 /// The function as native terms in a time span, one for each piece; empty if that fails.
@@ -135,7 +135,7 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
         return terms && agree(*function.formula(), *terms, times_within(from, to)) ? terms : std::nullopt;
     }
     if (const double period = function.formula()->period(); period > 0) {
-        if (auto waves = squares(function, from, to, period)) return waves;
+        if (auto waves = levels(function, from, to, period)) return waves;
     }
     if (!(to < no_end)) return {};
     model::Excitation sum;

@@ -52,14 +52,10 @@ const text::Option* find_option(const motion::MethodText& about, std::string_vie
     return found == about.call.options.end() ? nullptr : &*found;
 }
 
-/// Pushes an option's value; nil if absent or infinite.
-void push_option(lua_State* L, const text::Option& option, const text::OptionValue& value) {
+/// Pushes the value of an option, a number; nil if absent or infinite.
+void push_option(lua_State* L, const text::OptionValue& value) {
     if (const auto* number = std::get_if<double>(&value); number != nullptr && std::isfinite(*number)) {
         lua_pushnumber(L, *number);
-    } else if (const bool* flag = std::get_if<bool>(&value)) {
-        lua_pushboolean(L, *flag ? 1 : 0);
-    } else if (const auto* choice = std::get_if<std::size_t>(&value)) {
-        lua_pushstring(L, option.choices[*choice]);
     } else {
         lua_pushnil(L);
     }
@@ -78,7 +74,7 @@ int option_by_name(lua_State* L) {
     std::visit(
         [L, name](const auto& method) {
             const text::Option* option = find_option(method.about, name);
-            option != nullptr ? push_option(L, *option, option->filled.get(&method)) : lua_pushnil(L);
+            option != nullptr ? push_option(L, option->filled.get(&method)) : lua_pushnil(L);
         },
         integrator_self(L));
     return 1;

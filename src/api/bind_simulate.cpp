@@ -18,7 +18,7 @@
 #include "lua/standard_globals.hpp"
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
-#include "model/laws/user_law.hpp"
+#include "model/functions.hpp"
 #include "model/springs/user_spring.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
@@ -223,7 +223,7 @@ bool sees_all(const model::System& system, const model::Drive& drive, bool locat
     }
     for (const model::Joint& joint : system.joints) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) see(*spring->function);
-        if (const auto* law = joint.friction.law.as<model::laws::UserLaw>()) see(*law->function);
+        if (const auto* law = model::user_law(joint.friction.law)) see(*law->function);
         if (joint.friction.function != nullptr) see(*joint.friction.function);
         see_in(joint.friction.normal);
         for (const auto* varying : {&joint.friction.sliding, &joint.friction.holding}) {

@@ -239,14 +239,6 @@ PointGrid::PointGrid(std::vector<DataColumn> parameters)
     }
 }
 
-std::string PointGrid::text(std::size_t point) const {
-    std::string text;
-    for (std::size_t i = 0; i < parameters_.size(); ++i) {
-        text += (i == 0 ? "" : ", ") + parameters_[i].name + " = " + parameters_[i].text(place(i, point));
-    }
-    return text;
-}
-
 void PointGrid::set_fields(lua_State* L, std::size_t point) const {
     for (std::size_t i = 0; i < parameters_.size(); ++i) {
         lua::push_text(L, parameters_[i].name);

@@ -144,8 +144,6 @@ public:
     std::size_t place(std::size_t parameter, std::size_t point) const {
         return point / strides_[parameter] % parameters_[parameter].size();
     }
-    /// "r = 0.5, g = 1"
-    std::string text(std::size_t point) const;
     /// Sets the parameters of this point in the table on the top of the stack.
     void set_fields(lua_State* L, std::size_t point) const;
     /// The parameters as columns with one row for each of these points.

@@ -146,9 +146,12 @@ text::Expected<model::Oscillator> oscillator_of(const model::System& system) {
                                        system.joints.front().name)};
     }
     if (!system.is_plain()) {
-        return text::Error{system.joints.front().friction.is_constant()
-                               ? "needs rigid walls, and those of this system are elastic"
-                               : "needs constant friction, and that of this system varies"};
+        const model::Joint& body = system.joints.front();
+        return text::Error{
+            body.stops ? "needs rigid walls, and those of this system are elastic"
+            : body.friction.is_constant()
+                ? "needs friction of a law alone, and that of this system acts one way or through springs"
+                : "needs constant friction, and that of this system varies"};
     }
     return model::oscillator_at(system, 0);
 }

@@ -12,6 +12,7 @@ int append_piece(lua_State* /*L*/, const void* piece, std::size_t size, void* te
     return 0;
 }
 
+/// Reads what lua_dump wrote; after the right header it is complete.
 class DumpReader {
 public:
     explicit DumpReader(std::string_view dumped) : rest_(dumped) {}
@@ -19,35 +20,24 @@ public:
     std::optional<Prototype> read() {
         if (rest_.size() <= header_size + 1 || !rest_.starts_with(header_start)) return std::nullopt;
         take(header_size + 1);
-        Prototype all = function();
-        if (broken_ || !rest_.empty()) return std::nullopt;
-        return all;
+        return function();
     }
 
 private:
     std::string_view take(std::size_t count) {
-        if (count > rest_.size()) {
-            broken_ = true;
-            rest_ = {};
-            return {};
-        }
         const std::string_view piece = rest_.substr(0, count);
         rest_.remove_prefix(count);
         return piece;
     }
-    std::uint8_t byte() {
-        const std::string_view one = take(1);
-        return one.empty() ? std::uint8_t{0} : static_cast<std::uint8_t>(one.front());
-    }
+    std::uint8_t byte() { return static_cast<std::uint8_t>(take(1).front()); }
     /// Reads a number of seven bits per byte, the highest first; the last byte is marked.
     std::size_t size() {
         std::size_t value = 0;
-        while (!broken_) {
+        for (;;) {
             const std::uint8_t next = byte();
             value = value << 7U | (next & 0x7fU);
             if ((next & 0x80U) != 0) return value;
         }
-        return 0;
     }
     std::string_view string() {
         const std::size_t length = size();
@@ -55,7 +45,7 @@ private:
     }
     template <class Read>
     void each(Read read) {
-        for (std::size_t left = size(); left > 0 && !broken_; --left) read();
+        for (std::size_t left = size(); left > 0; --left) read();
     }
 
     Prototype function() {
@@ -96,7 +86,6 @@ private:
     }
 
     std::string_view rest_;
-    bool broken_ = false;
 };
 
 }  // namespace

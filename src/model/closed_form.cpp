@@ -19,7 +19,6 @@ constexpr std::size_t max_powers = 16;
 }  // namespace
 
 void ClosedForm::add_powers(double at, std::span<const double> coefficients) {
-    if (coefficients.empty()) return;
     const std::size_t n = coefficients.size();
     reach(n - 1);
     const double shift = since(at);

@@ -182,12 +182,6 @@ void Excitation::each_function(const std::function<void(UserFunction&)>& call) c
     }
 }
 
-bool Excitation::may_go_on() const {
-    bool may = true;
-    each_function([&](UserFunction& function) { may = may && function.may_go_on(); });
-    return may;
-}
-
 template <class Change>
 Excitation Excitation::changed(Change change) const {
     std::vector<Component> all(components().begin(), components().end());

@@ -11,9 +11,20 @@
 
 namespace dinal::model {
 
+/// The user's law in this friction, also within a sum; nullptr if there is none.
+inline const laws::UserLaw* user_law(const Friction& law) {
+    const auto* sum = law.as<laws::Sum<true>>();
+    return (sum != nullptr ? sum->main : law).as<laws::UserLaw>();
+}
+
 // Returns the value with each user function and excitation replaced by `other` of it.
 
 Friction with_functions(const Friction& law, auto&& other) {
+    if (const auto* sum = law.as<laws::Sum<true>>()) {
+        laws::Sum<true> changed = *sum;
+        changed.main = with_functions(sum->main, other);
+        return Friction(changed).under(law.normal());
+    }
     const auto* own = law.as<laws::UserLaw>();
     if (own == nullptr) return law;
     laws::UserLaw changed = *own;

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "model/laws/coulomb.hpp"
-#include "model/laws/user_law.hpp"
 
 namespace dinal::model {
 
@@ -120,11 +119,6 @@ double Oscillator::friction_ratio(double characteristic_torque) const {
 
 double Oscillator::characteristic_torque(const State& initial) const {
     return stiffness_ * std::hypot(initial.theta, initial.velocity / natural_frequency());
-}
-
-bool Oscillator::may_go_on() const {
-    const auto* law = friction_.as<laws::UserLaw>();
-    return (law == nullptr || law->function->may_go_on()) && spring_.may_go_on();
 }
 
 OscillatorParameters Oscillator::parameters() const {

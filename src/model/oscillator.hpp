@@ -95,8 +95,6 @@ public:
     const Units& units() const;
     /// Returns whether k is the only spring, so that quantities derived from k are valid.
     bool has_linear_spring() const { return has_spring() && spring_.none(); }
-    /// Returns, after a torque that was not finite, whether the user's functions may be evaluated again.
-    bool may_go_on() const;
     /// Rd under the normal load, as all friction torques here.
     double kinetic_friction() const { return friction_.kinetic(); }
     /// Re; the greater one if it depends on the direction.

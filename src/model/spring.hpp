@@ -25,8 +25,6 @@ concept SpringLaw = requires(const Law& law, double theta) {
     { law.complaint() } -> std::same_as<std::optional<text::Error>>;
     /// Returns whether torque(-theta) = -torque(theta).
     { law.is_odd() } -> std::same_as<bool>;
-    /// Returns, after a torque that was not finite, whether the spring may be evaluated again.
-    { law.may_go_on() } -> std::same_as<bool>;
     /// The Lua expression that constructs the spring; empty if there is none.
     { law.lua_text() } -> std::same_as<std::string>;
 };
@@ -46,7 +44,6 @@ public:
         return law_ ? law_->complaint() : std::optional<text::Error>();
     }
     bool is_odd() const { return !law_ || law_->is_odd(); }
-    bool may_go_on() const { return !law_ || law_->may_go_on(); }
     std::string lua_text() const { return law_ ? law_->lua_text() : ""; }
     /// The law if it is a `Law`, otherwise nullptr.
     template <SpringLaw Law>
@@ -64,7 +61,6 @@ private:
         virtual double energy(double theta) const = 0;
         [[nodiscard]] virtual std::optional<text::Error> complaint() const = 0;
         virtual bool is_odd() const = 0;
-        virtual bool may_go_on() const = 0;
         virtual std::string lua_text() const = 0;
     };
     template <class Law>
@@ -74,7 +70,6 @@ private:
         double energy(double theta) const override { return law.energy(theta); }
         [[nodiscard]] std::optional<text::Error> complaint() const override { return law.complaint(); }
         bool is_odd() const override { return law.is_odd(); }
-        bool may_go_on() const override { return law.may_go_on(); }
         std::string lua_text() const override { return law.lua_text(); }
         Law law;
     };

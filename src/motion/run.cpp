@@ -9,8 +9,8 @@
 #include <iterator>
 #include <span>
 
+#include "model/functions.hpp"
 #include "model/laws/tabulated.hpp"
-#include "model/laws/user_law.hpp"
 #include "motion/stillness.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
@@ -118,7 +118,7 @@ namespace {
 
 /// Returns whether the law may jump, or be as steep as a jump, above speed 0.
 bool may_jump(const model::Friction& law) {
-    return law.as<model::laws::UserLaw>() != nullptr || law.as<model::laws::Tabulated>() != nullptr;
+    return model::user_law(law) != nullptr || law.as<model::laws::Tabulated>() != nullptr;
 }
 
 /// Says where the run switched endlessly, and the remedy.
@@ -152,12 +152,8 @@ std::string chatter_text(const Run& run) {
         return "switched endlessly at one time, where no jump was located: if a function jumps there, a steep line or "
                "tanh would not, nor excitation.sampled or excitation.relay; otherwise try integrator.rk4";
     }
-    if (run.states > 0) {  // the cause may also be a jump in the rate of a state
-        return "switched endlessly at one time: a jump of M, of a spring, of friction or of the rate of a state chatters; a "
-               "steep line or tanh in its place would not";
-    }
-    return "switched endlessly at one time: a jump of M, a spring or friction chatters; a steep line or tanh would not, "
-           "nor excitation.sampled or excitation.relay";
+    return "switched endlessly at one time: a jump of M, of a spring, of friction or of the rate of a state chatters; a "
+           "steep line or tanh would not, nor excitation.sampled or excitation.relay";
 }
 
 /// Says which function is rough, and the remedy: another tolerance or integrator.

@@ -159,8 +159,7 @@ bool Witness::repeat_end(bool last) {
 namespace {
 
 bool has_functions(const model::Oscillator& system) {
-    return system.friction().as<model::laws::UserLaw>() != nullptr ||
-           system.spring().as<model::springs::UserSpring>() != nullptr;
+    return model::user_law(system.friction()) != nullptr || system.spring().as<model::springs::UserSpring>() != nullptr;
 }
 
 std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller& controller, auto&& heard) {
@@ -257,7 +256,7 @@ bool has_functions(const model::Oscillator& system, const model::Drive& drive) {
 
 bool has_functions(const model::System& system, const model::Drive& drive) {
     const auto has = [](const model::Joint& joint) {
-        return !joint.friction.is_constant() || joint.friction.law.as<model::laws::UserLaw>() != nullptr ||
+        return !joint.friction.is_constant() || model::user_law(joint.friction.law) != nullptr ||
                joint.spring.as<model::springs::UserSpring>() != nullptr;
     };
     return std::ranges::any_of(system.joints, has) || has_functions(drive);

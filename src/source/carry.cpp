@@ -183,9 +183,6 @@ bool Carrier::value(int index) {
         case LUA_TSTRING:
             lua::push_text(to_, lua::text_at(from_, index));
             return true;
-        case LUA_TLIGHTUSERDATA:
-            lua_pushlightuserdata(to_, lua_touserdata(from_, index));
-            return true;
         case LUA_TTABLE:
             return push_counterpart(index) || table(index);
         case LUA_TFUNCTION:

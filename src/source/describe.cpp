@@ -34,8 +34,7 @@ std::string lua_text(lua_State* L, const model::Spring& spring, ValueText* whole
     if (const auto* own = spring.as<model::springs::UserSpring>()) {
         return function_text(L, *own->function, whole);
     }
-    const std::string text = spring.lua_text();
-    return text.empty() ? "spring.polynomial{}" : text;
+    return spring.lua_text();
 }
 
 namespace {

@@ -191,6 +191,42 @@ TEST_CASE("an interval contains the values of a program, and its decisions are t
     CHECK(known > 3000);
 }
 
+TEST_CASE("the rate of a condition's margin is its derivative along the motion") {
+    Lot lot(4);
+    int known = 0;
+    for (int n = 0; n < 20000; ++n) {
+        Program made = lot.program(all);
+        const auto last = static_cast<std::uint16_t>(made.registers.size() - 1);
+        const auto condition = static_cast<std::uint32_t>(made.list.size() - 1);
+        made.list.back() = {.op = Op::less, .a = last, .b = inputs, .yes = condition + 1, .no = condition + 2};
+        made.list.push_back({.op = Op::give, .a = last});
+        made.list.push_back({.op = Op::give, .a = inputs});
+        Formula formula(made.list, made.registers, true, inputs, 0);
+        const std::array at{lot.between(-3, 3), lot.between(-3, 3), lot.between(-3, 3)};
+        const std::array way{1.0, lot.between(-2, 2), lot.between(-2, 2)};
+        model::terms::Piece piece;
+        formula.decide(piece, at[0], {at[1], at[2]}, {}, ~std::uint64_t{0});
+        if (piece.conditions.empty() || piece.conditions.back().step != condition) continue;
+        const auto margin = [&](double h) {
+            std::vector<double> margins;
+            (void)formula.value_on(piece, at[0] + h, {at[1] + h * way[1], at[2] + h * way[2]}, {}, &margins);
+            return margins.back();
+        };
+        const auto slope = [&](double h) {
+            return (8 * (margin(h) - margin(-h)) - margin(2 * h) + margin(-2 * h)) / (12 * h);
+        };
+        const double fine = slope(1e-4), coarse = slope(2e-4), size = std::fabs(fine) + 1e-3 * std::fabs(margin(0));
+        if (!std::isfinite(fine - coarse) || size < 1e-6 || std::fabs(fine - coarse) > 1e-7 * size) continue;
+        const double rate =
+            formula.margin_rate(piece, piece.conditions.size() - 1, at[0], {at[1], at[2]}, {}, {way[1], way[2]}, {});
+        if (std::isnan(rate)) continue;  // unknown, as that of the root of a constant 0
+        INFO("program " << n << ": rate " << rate << ", difference " << fine);
+        REQUIRE(std::fabs(rate - fine) <= 1e-6 * size);
+        ++known;
+    }
+    CHECK(known > 2000);
+}
+
 TEST_CASE("whole powers, waves and sums of exponentials have tight bounds") {
     // (t - 1)^2 exp(-t) on a disc of 1 about 1: 0 there, and at most e^0 = 1 (1^2 e^(1 - 1)).
     const std::vector<double> registers{0, 1, 2, 0, 0, 0, 0, 0};

@@ -113,6 +113,13 @@ TEST_CASE("a spline through points of a cubic is that cubic, wherever the points
     CHECK(through(cubic({0, 1, 3}, {0, 1, 9})).value(2) == within(4, 1e-14));
     CHECK(through(cubic({0, 2}, {1, 5})).value(0.5) == 2);
     CHECK(through(cubic({4}, {7})).value(-3) == 7);
+    // Two points again and again, with the slope -2 at both: 1.5 m0 + 3 m1 = 3 m0 + 1.5 m1 = -9. One is a constant.
+    CHECK(through(cubic({0, 2}, {1, 5}, 3)).value(0.5) == within(1.25, 1e-14));
+    CHECK(through(cubic({0, 2}, {1, 5}, 3)).value(2.5) == within(3, 1e-14));
+    const Polyline level = through(cubic({4}, {7}, 3));
+    CHECK(level.value(-3) == 7);
+    CHECK(level.constant_from() == -model::never);
+    CHECK(level.repeats_after() == 0);
 }
 
 TEST_CASE("two integrators agree on a motion under a spline, and its steady motion is that of the sine", "[spline]") {

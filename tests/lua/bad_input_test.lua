@@ -81,6 +81,46 @@ test("errors of a call through pcall and in a tail call still name a line", func
     has(message, "system: I = 0")
 end)
 
+test("what is no wrong option is refused in the words of its call", function()
+    local record = { t = vector.range(0, 9), theta = vector.range(0, 9):abs() }
+    local guess = system { I = 1, k = 1, Rd = 0.1 }
+    local function fit(options) return function() identify(merged({ data = record, system = guess, free = { "k" } }, options)) end end
+    local d, sine = data { x = { 1, 2 }, y = { 3, 4 } }, excitation.harmonic { omega = 1 }
+    local function extremes(options)
+        return function() theory.extremes { system = system(merged({ I = 1, k = 4 }, options)), theta0 = 1 } end
+    end
+    for sentence, call in pairs {
+        ["data takes one table of columns"] = function() data(1) end,
+        ["load reads CSV files, not .xlsx"] = function() load "x.xlsx" end,
+        ["progress needs the number of steps"] = function() progress "x" end,
+        ["progress: the label must be a string, got 4"] = function() progress(3, 4) end,
+        ["rows are selected by d:filter"] = function() return d[true] end,
+        ["'x.dat' is a name for the record of 1989"] = function() d:save "x.dat" end,
+        ["x must be one column"] = function() d:plot { x = { "x", "y" } } end,
+        ["an excitation cannot be scaled by inf"] = function() return math.huge * sine end,
+        ["speed must begin with 0: friction at standstill"] = function() friction.table { speed = { 1, 2 }, torque = { 1, 2 } } end,
+        ["speed[3] = 2 is not greater than speed[2] = 2"] = function() friction.table { speed = { 0, 2, 2 }, torque = { 1, 2, 2 } } end,
+        ["torque[1] = -1 must not be negative"] = function() friction.table { speed = { 0, 2 }, torque = { -1, 2 } } end,
+        ["walls: restitution = 2 must be from 0 to 1"] = function() system { I = 1, k = 1, walls = { lower = -1, upper = 1, restitution = 2 } } end,
+        ["I = 1e-200 and C = 1e+200 are too far apart"] = function() system { I = 1e-200, k = 0, C = 1e200 } end,
+        ["coefficients is empty; give at least one"] = function() excitation.polynomial { coefficients = {} } end,
+        ["a measured column is constant"] = fit { data = { t = record.t, theta = 0 * record.t } },
+        ["a measured column needs at least 8 numbers"] = fit { data = { t = vector.range(0, 4), theta = vector.range(0, 4) } },
+        ["times must increase, but t = 9 is followed by 8"] = fit { data = { t = vector.range(9, 0, -1), theta = record.theta } },
+        ["measured must be \"theta\", \"velocity\" or"] = fit { measured = { 3 } },
+        ["needs rigid walls, and those of this system are elastic"] = extremes { walls = { upper = 1, stiffness = 9 } },
+        ["that of this system acts one way or through springs"] = extremes { friction = friction.jenkins { stiffness = 3, Rd = 1 } },
+        ["needs constant friction, and that of this system varies"] = extremes { Rd = math.cos },
+        ["the friction of this system is a function: give both Rd and Re"] = function()
+            system { I = 1, k = 4, friction = function(v) return 0.3 end }:with { Rd = 1 }
+        end,
+    } do
+        raises_here(call, sentence)
+    end
+    local sys = system { I = 1, k = 4, friction = function(v) return 0.3 end }:with { k = 5 }
+    equal(tostring(sys), "system{ I = 1, k = 5, friction = function(v) return 0.3 end }")
+end)
+
 test("times with powers that overflow are refused", function()
     refuses(system, {
         { { I = 1e200, k = 1 }, "I = 1e+200 and k = 1 are too far apart for double precision: choose other units" },

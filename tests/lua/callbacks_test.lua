@@ -136,4 +136,12 @@ test("errors of M do not leak: hundreds of them leave the stack and the registry
     assert(collectgarbage "count" < before + 12, collectgarbage "count" - before)
 end)
 
+test("an error in what an object with __call returns names the line of that function", function()
+    local M = setmetatable({}, { __call = function(self, t) return "x" end })
+    local line = debug.getinfo(1, "l").currentline - 1
+    raises(function()
+        system { I = 1, k = 1 }:simulate { M = M, t_end = 1 }
+    end, (":%d: M returned the string \"x\" at t = 0"):format(line))
+end)
+
 finish()

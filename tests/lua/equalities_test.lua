@@ -214,11 +214,17 @@ local acting = {
     delayed = function()
         return excitation.delayed(function(t, theta, velocity) return -0.4 * velocity end, { by = 0.7 })
     end,
+    ["laws in a list, one of them a function"] = function()
+        local slope = 0.1
+        local law = friction.law(function(v) return 0.2 + slope * v end)
+        return sine, system { I = 1, k = 4, friction = { law, friction.jenkins { stiffness = 3, Rd = 0.1 } } }
+    end,
 }
 
 test("a worker of a sweep gives the same result as a direct call, for each controller and native term with its options", function()
     for kind, make in pairs(acting) do
-        local M, sys = make(), system(a)
+        local M, sys = make()
+        sys = sys or system(a)
         local function ask()
             local run = sys:simulate { M = M, theta0 = 0.4, t_end = 4, dt = 0.5 }
             local theta, velocity = run:at(3.7)
@@ -228,6 +234,23 @@ test("a worker of a sweep gives the same result as a direct call, for each contr
         local here, there = ask(), sweep { over = { x = { 1 } }, workers = 1, run = ask }
         for name, value in pairs(here) do close(there[name][1], value, kind .. ": " .. name) end
     end
+end)
+
+test("many equal bodies around one are one body as heavy as all of them", function()
+    local hub, pad, link = { I = 1, k = 4, C = 0.1 }, { I = 0.1, C = 0.02 }, { k = 0.3, C = 0.01 }
+    local count = 70
+    local many, links = { hub = hub }, {}
+    for i = 1, count do
+        many["b" .. i], links["l" .. i] = pad, merged({ "hub", "b" .. i }, link)
+    end
+    local one = {}
+    for name, number in pairs(pad) do one[name] = count * number end
+    for name, number in pairs(link) do link[name] = count * number end
+    local options = { M = { hub = sine }, t_end = 3, dt = 0.1 }
+    local all = system { bodies = many, links = links }:simulate(options)
+    local two = system { bodies = { hub = hub, b = one }, links = { l = merged({ "hub", "b" }, link) } }:simulate(options)
+    close(all.hub.theta, two.hub.theta, "the hub")
+    close(all.b9.theta, two.b.theta, "a body around it")
 end)
 
 -- ---- bristles, and one record read in two ways

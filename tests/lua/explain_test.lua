@@ -113,6 +113,19 @@ test("a belt under a body without dry friction is said to have no effect", funct
     has_not(told(smooth), "rubs", "smooth")
 end)
 
+test("each friction and spring has its words", function()
+    local function story(own, options) return system(own):simulate(merged({ theta0 = 1, t_end = 3, M = math.sin }, options)) end
+    says(story { I = 1, k = 0, C = 0.5 }, "The system is a block without a spring, with viscous damping C = 0.5 and no dry friction")
+    says(story({ I = 1, k = 4, C = 0.5, units = { theta = "mm", M = "N" } }), "Units: theta in mm, M in N.")
+    local function linked(link)
+        return system { bodies = { a = { I = 1, k = 1 }, b = { I = 1, k = 2 } }, links = { w = merged({ "a", "b" }, link) } }:simulate { M = { a = math.sin }, t_end = 9 }
+    end
+    says(linked { friction = friction.freewheel { Rd = 0.1 } }, "w links a and b. It has a freewheel with Rd = 0.1.")
+    says(linked { spring = spring.polynomial { [3] = 1 } }, "It has a nonlinear spring and no dry friction.")
+    local moved = system { bodies = { a = { velocity = math.sin }, b = { I = 1, k = 2 } }, links = { w = { "a", "b", k = 4 } } }
+    says(moved:simulate { t_end = 9 }, "a is moved by its velocity, which takes torques from")
+end)
+
 test("a belt that jumps, announced or not, is named as the cause of a slip, with its direction", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, belt in ipairs { 0.2 + excitation.step { amplitude = -0.7, at = 1 }, function(t) return t < 1 and 0.2 or -0.5 end } do

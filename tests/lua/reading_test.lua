@@ -141,6 +141,8 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
         { function(t) return t % 2 < 0.7 and 2 or t % 2 < 1.1 and 0.5 or -1 end, 2 },
         { function(t) return math.floor(t / 0.5) % 3 end, 1.5 },
         { function(t) return t - 1.3 * math.floor(t / 1.3) end, 1.3 },
+        { function(t) return -t // 0.5 % 3 end, 1.5 },
+        { function(t) local x if t % 2 < 1 then x = t % 0.5 else x = t % 0.25 end return x end, 2 },
         { function(t) return math.max(0, math.sin(3 * t)) end, 2 * math.pi / 3 },
         { function(t) return math.abs(math.sin(t)) + (t % 1 < 0.5 and 0.5 or 0) * 0 end },
         { function(t) if t < 1 then return t elseif t < 3 then return math.sin(t) end return 2 * math.exp(3 - t) end },

@@ -7,6 +7,9 @@ test("the work of a torque is its integral over the body's way, and a slipping c
     near(e.motor.input, run.motor.theta[1001], 1e-12)
     near(e.clutch.dry, 2 * (run.clutch.theta[1001]), 1e-11)
     near(e.total.dry, e.clutch.dry, 0)
+    local free = rig:simulate { velocity0 = { motor = 3 }, t_end = 4 }:energy() -- 4.5 becomes 4 (3/4)^2 / 2
+    has(tostring(free):gsub("%s+", " "), "input kinetic spring viscous dry", "motor 0 -4.21875 0 0 0", "load 0 0.84375 0 0 0",
+        "clutch 0 0 0 0 3.375 ", "all 0 -3.375 0 0 3.375 ")
     raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
 end)
 
@@ -30,6 +33,9 @@ test("the energy adds up with everything that several bodies may have", function
         events = { { when = function(t, theta) return t - 11.3 end, act = function(t, theta, velocity, z) velocity.b = velocity.b + 0.5 end } },
     }
     local e = closes(run, "all")
+    for name, pattern in pairs { belt = "belt %.6g was added", base = "base %.6g was added", acts = "acts %.6g was added", impacts = "impacts %.6g were lost" } do
+        has(tostring(e), pattern:format(e.total[name]))
+    end
     assert(e.c.impacts > 0 and e.gap.impacts > 0 and e.pad.dry > 0 and e.a.belt ~= 0 and e.total.base ~= 0 and e.total.acts ~= 0)
     says(run, "3 bodies and 3 links", "a rubs on a belt", "gap links a and c. It has no dry friction", "hit the walls", "Energy came from", "the friction of pad")
 end)

@@ -265,4 +265,14 @@ test("a relay whose function jumps past both thresholds switches once", function
     end
 end)
 
+test("a narrow peak of a law is seen in a list of laws as it is alone", function()
+    local function law(more) return friction.law(function(v) return more + 3 * math.exp(-((v - 0.37) / 0.002) ^ 2) end) end
+    local function run(own)
+        return system { I = 1, k = 4, friction = own }:simulate { M = excitation.harmonic { amplitude = 1.4, omega = 0.8 }, theta0 = 1.5, t_end = 20, dt = 0.1 }
+    end
+    local one, many = run(law(0.3)), run { law(0.2), friction.coulomb { Rd = 0.1 } }
+    equal(#many.events, #one.events)
+    near(many.theta, one.theta, 1e-12)
+end)
+
 finish()

@@ -20,7 +20,6 @@ struct PolynomialSpring {
     double energy(double theta) const;
     [[nodiscard]] std::optional<text::Error> complaint() const;
     bool is_odd() const;
-    [[nodiscard]] static bool may_go_on() { return true; }
     std::string lua_text() const;
 };
 

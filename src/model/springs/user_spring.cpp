@@ -43,7 +43,6 @@ double refined_over(terms::UserFunction& torque, double a, double b, double whol
 }  // namespace
 
 double UserSpring::energy(double theta) const {
-    if (theta == 0) return 0;
     const double whole = over(*function, 0, theta);
     const double size = std::fabs(theta) * std::fabs(torque(theta)) + std::fabs(whole);
     return refined_over(*function, 0, theta, whole, std::numeric_limits<double>::epsilon() / 2 * size, most_divisions);

@@ -19,7 +19,6 @@ struct UserSpring {
     [[nodiscard]] static std::optional<text::Error> complaint() { return std::nullopt; }
     /// The symmetry of the function is unknown, so false.
     [[nodiscard]] static bool is_odd() { return false; }
-    bool may_go_on() const { return function->may_go_on(); }
     /// The function's source is known to Lua only.
     [[nodiscard]] static std::string lua_text() { return ""; }
 };

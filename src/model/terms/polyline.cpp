@@ -68,7 +68,6 @@ std::vector<double> spline_slopes(std::span<const double> t, std::span<const dou
 
 std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<const double> values, double period) {
     const std::size_t n = t.size();
-    if (n < 2) return std::vector<double>(n, 0.0);
     std::vector<double> h(n), rise(n);
     for (std::size_t i = 0; i < n; ++i) {
         const bool ends = i + 1 == n;
@@ -80,13 +79,6 @@ std::vector<double> periodic_spline_slopes(std::span<const double> t, std::span<
         const std::size_t before = (i + n - 1) % n;
         below[i] = h[i], here[i] = 2 * (h[before] + h[i]), above[i] = h[before];
         right[i] = 3 * (h[i] * rise[before] + h[before] * rise[i]);
-    }
-    if (n == 2) {
-        // With two points, both neighbours of a point are the same.
-        const double side = below[0] + above[0], other = below[1] + above[1];
-        const double determinant = here[0] * here[1] - side * other;
-        return {(right[0] * here[1] - side * right[1]) / determinant,
-                (here[0] * right[1] - other * right[0]) / determinant};
     }
     // The corners of the matrix are a rank-one correction (Sherman and Morrison).
     const double corner = -here[0], ratio = below[0] / corner;
@@ -110,6 +102,7 @@ std::shared_ptr<const Samples> Polyline::prepared(std::shared_ptr<const Samples>
         made.t.pop_back();
         made.M.pop_back();
     }
+    if (made.t.size() == 1) made.period.reset();  // it is constant
     const bool ends = !made.period || made.t.back() < made.t.front() + *made.period;
     if (cubic && ends) {
         made.slopes =
@@ -121,7 +114,6 @@ std::shared_ptr<const Samples> Polyline::prepared(std::shared_ptr<const Samples>
 Polyline::Piece Polyline::piece(double at) const {
     const std::vector<double>& t = samples->t;
     const double period = *samples->period;
-    if (t.size() == 1) return {at, at + period, 0, 0};
     const double cycle = cycle_at(at, (at - t.front()) / period, [&](double n) { return t.front() + n * period; });
     const auto point = [&](std::size_t i) {
         return i == t.size() ? t.front() + (cycle + 1) * period : t[i] + cycle * period;

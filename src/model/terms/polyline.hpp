@@ -79,7 +79,7 @@ struct Polyline {
         return samples->t.back();
     }
     double most() const { return most_; }
-    double repeats_after() const { return samples->t.size() == 1 ? 0 : samples->period.value_or(0); }
+    double repeats_after() const { return samples->period.value_or(0); }
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         const Samples& s = *samples;
@@ -119,7 +119,6 @@ private:
     }
     double on_piece(const Piece& now, double t, double rest) const {
         const Samples& s = *samples;
-        if (now.first == now.second) return s.M.front();
         if (holds()) return s.M[now.first];
         const double d = (t - now.from) + rest;
         if (s.slopes.empty()) return s.M[now.first] + (s.M[now.second] - s.M[now.first]) * (d / (now.to - now.from));

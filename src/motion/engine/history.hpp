@@ -99,7 +99,6 @@ public:
     double whole_until() const {
         return before_ == nullptr ? whole_until_ : std::min(whole_until_, before_->whole_until());
     }
-    bool empty() const { return list_.empty(); }
     /// The end times of the stored stretches.
     std::vector<double> ends() const;
     /// Visits all legs in order without gaps. Requires a run that keeps torques.

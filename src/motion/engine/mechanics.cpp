@@ -6,7 +6,7 @@
 #include <map>
 
 #include "algebra/decompositions.hpp"
-#include "model/laws/user_law.hpp"
+#include "model/functions.hpp"
 #include "model/springs/user_spring.hpp"
 
 namespace dinal::motion::engine {
@@ -538,7 +538,7 @@ Mechanics::Asked Mechanics::asked_spring(std::size_t joint) const {
 
 Mechanics::Asked Mechanics::asked_law(std::size_t joint) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
-    const auto* user = friction.law.as<laws::UserLaw>();
+    const auto* user = model::user_law(friction.law);
     const auto& held = contacts_[joint].law;
     return {friction.function != nullptr ? friction.function.get()
             : user != nullptr            ? user->function.get()
@@ -715,7 +715,7 @@ void Mechanics::each_function(const std::function<void(model::UserFunction&)>& c
     for (const model::OwnState& state : drive_.states) call(*state.rate);
     for (const Joint& joint : system_.joints) {
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) call(*spring->function);
-        if (const auto* law = joint.friction.law.as<laws::UserLaw>()) call(*law->function);
+        if (const auto* law = model::user_law(joint.friction.law)) call(*law->function);
         if (joint.friction.function != nullptr) call(*joint.friction.function);
     }
 }

@@ -152,7 +152,6 @@ public:
         const auto& moved = system_.bodies[body].moved;
         return moved && moved->without_inertia ? 0 : system_.bodies[body].inertia;
     }
-    std::size_t size() const { return 2 * bodies() + states(); }
     /// Returns whether torques or rates depend on the motion other than through constant coefficients.
     bool nonlinear() const { return nonlinear_; }
     /// Returns whether its friction law is native and has constant parameters.

@@ -28,7 +28,6 @@ public:
 
     double w0() const { return w0_; }
     double w0_squared() const { return w0_squared_; }
-    double delta() const { return delta_; }
     /// The rate of the faster of its two parts, per time unit, which bounds the growth of derivatives.
     double fastest() const { return fastest_; }
     /// The rate of the part that does not decay at once; it also converts rounding of an angle to that of a velocity.

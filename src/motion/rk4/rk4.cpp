@@ -7,7 +7,7 @@
 #include <memory>
 #include <numbers>
 
-#include "model/laws/user_law.hpp"
+#include "model/functions.hpp"
 #include "model/springs/user_spring.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/rk4/rk4_engine.hpp"
@@ -78,7 +78,7 @@ Run Rk4::run(const Problem& problem) const {
     if (run.outcome == model::Outcome::chattering && problem.drive.M().has_feedback())
         return engine::run(problem, cut());
     const bool samples = problem.drive.M().has_script() || problem.system.spring().as<model::springs::UserSpring>() ||
-                         problem.system.friction().as<model::laws::UserLaw>();
+                         model::user_law(problem.system.friction());
     if (samples) run.gap = run.unproven = engine.steps().h / 2;
     return run;
 }
