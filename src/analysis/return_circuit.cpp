@@ -28,7 +28,7 @@ public:
         Here& here = at(p);
         chart_.emplace(chart_of(here.runs));
         timeless_ = here.question.is_timeless();
-        half_ = motion.symmetric && periods == 1 && is_alike_both_ways(here.question);
+        half_ = motion.symmetric;
         stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
         offset_ = motion.by_returns.question->repeats.start - here.question.repeats.start;

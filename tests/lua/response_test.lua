@@ -341,6 +341,19 @@ test("limit cycles begin at a Hopf point: those of van der Pol", function()
     for _, row in ipairs(near_zero) do near(row.amplitude, 2 * math.sqrt(row.mu), 1e-3 * row.amplitude) end
 end)
 
+test("a branch that begins at a symmetric motion is right where the problem is symmetric no more", function()
+    local plain, sine = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }, excitation.harmonic{ amplitude = 2, omega = 1.3 }
+    local uneven = {
+        spring = function(e) return plain:with{ spring = spring.polynomial{ [2] = e, [3] = 0.1 } } end,
+        walls = function(e) return plain:with{ walls = { lower = -0.5, upper = 0.5 + e, restitution = 0.6 } } end,
+    }
+    for name, at in pairs(uneven) do
+        local c = plain:response{ over = { e = { 0, 0.1, 0.2 } }, at = function(p) return { M = sine, system = at(p.e) } end }
+        equal(#c, 3, name)
+        for _, row in ipairs(c) do near(row.amplitude, at(row.e):steady{ M = sine }.amplitude, 1e-8) end
+    end
+end)
+
 test("at a pitchfork the motion ceases to be symmetric", function()
     local sys = system{ I = 1, k = 1, C = 0.1, spring = spring.polynomial{ [3] = 1 } }
     local c = sys:response{ amplitude = 5, over = { omega = vector.linspace(0.5, 1, 26) } }
