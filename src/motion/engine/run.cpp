@@ -122,7 +122,8 @@ void Engine::begin() {
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) contacts_.of[j].leaned = now_.mode.leans[j] != 0;
     } else {
-        project(now_.side());
+        // What sticks to a belt has its velocity before the break, as at the end of a stretch.
+        project(now_.after_break ? Side::before : Side::at);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
             contacts_.of[j].creeping = event_at(mechanics_, now_, EventKind::stick, j);
