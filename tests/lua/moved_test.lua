@@ -44,6 +44,19 @@ test("the ground may be a body, a jump of velocity is an impulse, and a moved bo
     near(run:energy().total.input, 1.5, 1e-13)
     equal(run.crank.events.kind[1], "impact")
     closes(run)
+    -- Friction gives no impulse: the load slips until it is as fast, as on a belt, and as the block on the ground.
+    local jump = excitation.step { amplitude = 2, at = 1 }
+    local belt = system { I = 1, k = 0, Rd = 3 }:simulate { belt = jump, t_end = 4 }
+    for Rd, last in pairs { [0] = belt.theta[#belt], [0.1] = 6 - 2 ^ 2 / (2 * 2.9) } do
+        for _, crank in ipairs { { velocity = jump }, { theta = excitation.ramp { slope = 2, at = 1 } } } do
+            local rig = system { bodies = { crank = crank, load = { I = 1, Rd = Rd } }, links = { pad = { "crank", "load", Rd = 3 } } }
+            for _, dragged in ipairs { rig:simulate { t_end = 4 }, rig:simulate { t_end = 1 }:continue(4) } do
+                near(dragged.crank.theta[#dragged], 6, 1e-12)
+                near(dragged.load.theta[#dragged], last, 1e-12)
+                closes(dragged)
+            end
+        end
+    end
     local struck = system { bodies = { bat = { velocity = 1, I = 1 }, ball = { I = 1 } }, links = { gap = { "bat", "ball", walls = { upper = 0.5, restitution = 1 } } } }
         :simulate { t_end = 1 }
     near(struck.ball.velocity[#struck], 2, 1e-13)
