@@ -354,6 +354,10 @@ test("linear growth has the rate of its closed form", function()
     near(system{ I = 1, k = 1, Rd = 0.05 }:steady{ M = beside }.growth, 2 * (0.8 * math.pi - 0.2), 1e-9)
     local fed = system{ I = 1, k = 1 }:steady{ M = function(_, _, v) return v > 0 and 0.1 or -0.1 end, velocity0 = 1 }
     near(fed.growth, 0.4, 0.02)
+    -- what grows exponentially has no such rate
+    local driven = system{ I = 1, k = 1 }:steady{ M = function(t, _, v) return math.sin(0.7 * t) + 0.05 * v end, omega = 0.7 }
+    equal(driven.growth, math.huge)
+    equal(tostring(driven), "grows: without bound")
 end)
 
 test("a search begins with the states of the run, and after a step of M is over", function()
