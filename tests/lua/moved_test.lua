@@ -95,6 +95,17 @@ test("rigid walls of a moved body are refused: they could not stop it", function
     assert(system { bodies = { cam = moved, b = { I = 1 } } })
 end)
 
+test("an angle that is not read is sampled at most run.gap apart", function()
+    local times = {}
+    local angle = function(t) times[#times + 1] = t return 0.3 * math.sin(2 * t) end
+    local rig = system { bodies = { cam = { theta = angle }, b = { I = 1, k = 1, Rd = 0.1 } }, links = { rod = { "b", "cam", k = 3 } } }
+    local run = rig:simulate { t_end = 20, dt = 20 }
+    table.sort(times)
+    local apart = 0
+    for i = 2, #times do apart = math.max(apart, times[i] - times[i - 1]) end
+    near(apart, run.gap, 1e-12)
+end)
+
 test("a moved body is not a system by itself", function()
     local rig = system { bodies = { cam = { theta = 0.1, k = 3 }, b = { I = 1 } }, links = { rod = { "b", "cam", k = 3 } } }
     raises_here(function() return rig.cam end, "sys.cam: cam is moved, and so no system by itself")
