@@ -133,7 +133,15 @@ public:
             }
             for (const double velocity : drive.velocity0) size = std::max(size, std::fabs(velocity) / omega);
             for (std::size_t i = 0; i < own.size(); ++i) {
-                if (own[i] < 2 * n) units[static_cast<Eigen::Index>(i)] = own[i] < n ? size : size * omega;
+                const auto place = static_cast<Eigen::Index>(i);
+                const auto state = static_cast<std::size_t>(std::max<Eigen::Index>(own[i] - 2 * n, 0));
+                if (own[i] < 2 * n) {
+                    units[place] = own[i] < n ? size : size * omega;
+                } else if (state < drive.states.size()) {
+                    // What a state has come down to when the motion ended is no scale.
+                    units[place] = std::max(std::fabs(x[place]), std::fabs(drive.states[state].start));
+                    if (!(units[place] > 1e-9 * size)) units[place] = size;
+                }
             }
         }
         for (Eigen::Index i = 0; i < x.size(); ++i) {

@@ -351,6 +351,14 @@ test("limit cycles begin at a Hopf point: those of van der Pol", function()
     local near_zero = c:filter(function(row) return row.status == "steady" and row.amplitude > 0.05 and row.amplitude < 0.5 end)
     assert(#near_zero > 3)
     for _, row in ipairs(near_zero) do near(row.amplitude, 2 * math.sqrt(row.mu), 1e-3 * row.amplitude) end
+    -- A torque that lags behind the velocity begins them at mu = 0, too: (s^2 + 1)(s + 5) = 5 mu s.
+    local lagging = system{ I = 1, k = 1 }:response{ over = { mu = { -0.5, 0.25, 1 } }, at = function(p)
+        return { M = function(_, theta, _, z) return (p.mu - theta^2) * z.v end, theta0 = 0.1,
+            states = { v = { rate = function(_, _, velocity, z) return 5 * (velocity - z.v) end } } }
+    end }
+    equal(table.concat(lagging.points.kind, " "), "hopf")
+    near(lagging.points.mu[1], 0, 1e-6)
+    equal(table.concat(lagging.status, " "), "rest rest rest steady steady")
 end)
 
 test("a branch that begins at a symmetric motion is right where the problem is symmetric no more", function()
