@@ -173,6 +173,9 @@ test("a sampled jump that drives the motion back from both sides ends the run wi
     equal(run.status, "failed")
     has(run.outcome, "switched endlessly")
     near(run.t_end, 4.8154495, 1e-6)
+    -- Beside one that is read and could slide there, too.
+    local M = excitation.scripted(f) + excitation.scripted(unread(f))
+    has(system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.7, t_end = 40 }.outcome, "switched endlessly")
 end)
 
 test("a function that truncates its digits is noise, not a condition", function()
