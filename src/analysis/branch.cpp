@@ -64,7 +64,7 @@ public:
     PeriodCircuit(const Family& family, double p, const SteadyMotion& motion, int periods,
                   const motion::Monitor& monitor)
         : family_(family), monitor_(monitor), periods_(periods) {
-        half_ = motion.symmetric && periods == 1 && is_alike_both_ways(family_(p));
+        half_ = motion.symmetric;
         const SteadyQuestion question = family_(p);
         first_ = map(question).place(motion.start);
     }

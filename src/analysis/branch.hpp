@@ -81,7 +81,8 @@ private:
     std::optional<model::Contradiction> contradiction_;
 };
 
-/// A circuit of theta and velocity over `periods` of M, or over half a period of a symmetric motion.
+/// A circuit of theta and velocity over `periods` of M, or over half a period if the motion is symmetric, which it may
+/// be only in a family that is alike both ways everywhere. So is the next one.
 std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 /// A circuit of theta, velocity and states: from period to period, from passage to passage of a cycle, or of a steadily

@@ -24,7 +24,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
         if (found && complete(*found, false)) return {};
         const auto& seen = search.seen();
         if (search.failed()) {
-            note_failure(*search.failed(), seen);
+            note_failure(*search.failed());
             return {};
         }
         facts_.change = search.nearest_repeat();
@@ -43,6 +43,7 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
     const bool grows = widens && sizes[2] > 1.15 * sizes[1] && sizes[1] > 1.1 * sizes[0];
     if (is_free() ? facts_.growth > 0 : grows && !is_bounded()) {
         facts_.status = SteadyStatus::grows;
+        if (sizes[2] > faster * sizes[1]) facts_.growth = model::never;
         return {};
     }
     facts_.growth = 0;
@@ -75,12 +76,11 @@ double ForcedSearch::largest(const std::vector<Map::Return>& seen, std::size_t f
     return size;
 }
 
-void ForcedSearch::note_failure(model::Outcome outcome, const std::vector<Map::Return>& seen) {
+void ForcedSearch::note_failure(model::Outcome outcome) {
     facts_.outcome = outcome;
     if (outcome != model::Outcome::state_not_finite) return;
     facts_.status = SteadyStatus::grows;
-    const std::size_t n = seen.size();
-    if (n > 1) facts_.growth = size_at(seen[n - 1]) - size_at(seen[n - 2]);
+    facts_.growth = model::never;
 }
 
 using Eigen::VectorXd;

@@ -94,11 +94,13 @@ protected:
     /// Returns whether nothing restores the angle, which may then drift for ever and counts as growing.
     virtual bool is_free() const = 0;
 
+    /// What grows evenly at most doubles in the second half of a search; a greater ratio has no growth for one period.
+    static constexpr double faster = 2.5;
     SteadyMotion facts_;
 
 private:
     double growth_of(const std::vector<Map::Return>& seen) const;
-    void note_failure(model::Outcome outcome, const std::vector<Map::Return>& seen);
+    void note_failure(model::Outcome outcome);
     /// The greatest size among the places `from` to `until` - 1.
     double largest(const std::vector<Map::Return>& seen, std::size_t from, std::size_t until) const;
 };

@@ -78,15 +78,27 @@ private:
     }
 
     /// The circuit of a motion that may not be the only one; null if it has none.
-    std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) const {
+    std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) {
         const bool slides = motion.status == SteadyStatus::rest && motion.by_returns.question && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
         if (std::isnan(motion.amplitude)) return {};  // it rotates: no amplitude
         const SteadyQuestion question = question_.family(p);
         if (!question.is_plain() && (question.settles >= 0 || contracts(question))) return {};
         if (contracts(question) && question.drive.states.empty() && question.drive.events.empty()) return {};
-        if (PeriodMap::applies_to(question)) return circuit_of_periods(question_.family, p, motion, periods, monitor_);
-        return circuit_of_returns(question_.family, p, motion, periods, monitor_);
+        SteadyMotion begun = motion;
+        begun.symmetric = motion.symmetric && periods == 1 && stays_alike();
+        if (PeriodMap::applies_to(question)) return circuit_of_periods(question_.family, p, begun, periods, monitor_);
+        return circuit_of_returns(question_.family, p, begun, periods, monitor_);
+    }
+
+    /// Returns whether the problem is alike both ways at all values: otherwise a map over half a period, by which a
+    /// branch begins at a symmetric motion, would be wrong at other points of it.
+    bool stays_alike() {
+        if (!stays_alike_) {
+            stays_alike_ =
+                std::ranges::all_of(sorted_, [&](double value) { return is_alike_both_ways(question_.family(value)); });
+        }
+        return *stays_alike_;
     }
 
     void note_outcome(const Circuit& circuit) {
@@ -303,6 +315,7 @@ private:
     double way_, range_ = 0;
     std::size_t seen_ = 0;  // number of branches whose births were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
+    std::optional<bool> stays_alike_;  // empty before it is asked
     ResponseCurve curve_;
 };
 

@@ -28,7 +28,7 @@ public:
         Here& here = at(p);
         chart_.emplace(chart_of(here.runs));
         timeless_ = here.question.is_timeless();
-        half_ = motion.symmetric && periods == 1 && is_alike_both_ways(here.question);
+        half_ = motion.symmetric;
         stands_ = timeless_ && motion.period == 0;
         cycles_ = timeless_ && !stands_;
         offset_ = motion.by_returns.question->repeats.start - here.question.repeats.start;
@@ -133,7 +133,15 @@ public:
             }
             for (const double velocity : drive.velocity0) size = std::max(size, std::fabs(velocity) / omega);
             for (std::size_t i = 0; i < own.size(); ++i) {
-                if (own[i] < 2 * n) units[static_cast<Eigen::Index>(i)] = own[i] < n ? size : size * omega;
+                const auto place = static_cast<Eigen::Index>(i);
+                const auto state = static_cast<std::size_t>(std::max<Eigen::Index>(own[i] - 2 * n, 0));
+                if (own[i] < 2 * n) {
+                    units[place] = own[i] < n ? size : size * omega;
+                } else if (state < drive.states.size()) {
+                    // What a state has come down to when the motion ended is no scale.
+                    units[place] = std::max(std::fabs(x[place]), std::fabs(drive.states[state].start));
+                    if (!(units[place] > 1e-9 * size)) units[place] = size;
+                }
             }
         }
         for (Eigen::Index i = 0; i < x.size(); ++i) {

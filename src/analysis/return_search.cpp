@@ -248,8 +248,7 @@ private:
         if (!model::is_whole(facts.outcome) && !(passage_ && facts.outcome == model::Outcome::stopped)) {
             if (facts.outcome != model::Outcome::state_not_finite) return false;
             facts.status = SteadyStatus::grows;
-            const std::size_t last = sizes_.size();
-            if (!timeless_ && last > 1) facts.growth = sizes_[last - 1] - sizes_[last - 2];
+            facts.growth = model::never;
             return false;
         }
         s_.largest_ = std::max(s_.largest_, size);
@@ -360,7 +359,8 @@ private:
         constexpr double clearly = 1.3;
         if (last < clearly * before) return;
         s_.facts_.status = SteadyStatus::grows;
-        s_.facts_.growth = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
+        const double evenly = (last - before) / static_cast<double>(sizes_.end() - 1 - half);
+        s_.facts_.growth = last > faster * before ? model::never : evenly;
     }
 
     ReturnSearch& s_;

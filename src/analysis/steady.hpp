@@ -90,7 +90,7 @@ struct SteadyMotion {
     bool stable = false, symmetric = false;
     std::optional<bool> unique;      ///< none: unknown, search from other starts
     std::pair<double, double> rest;  ///< range of angles at which it may rest, if it adheres
-    double growth = 0;               ///< growth of the amplitude in a period of M
+    double growth = 0;               ///< growth of the amplitude in a period of M; infinite if not even
     int maps = 0;                    ///< number of periods that were run
     /// of status none: greatest change of the last periods from earlier ones, in amplitudes, if they nearly repeat
     std::optional<double> change = {};

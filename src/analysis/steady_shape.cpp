@@ -234,7 +234,7 @@ public:
                 }
                 break;
             case SteadyStatus::grows:
-                if (timeless_ || several()) {
+                if (timeless_ || several() || std::isinf(motion_.growth)) {
                     say("There is no steady motion: the amplitude grows without bound.");
                     break;
                 }

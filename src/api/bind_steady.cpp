@@ -247,7 +247,7 @@ std::string steady_summary(lua_State*, const SteadyHandle& handle) {
         case SteadyStatus::rest:
             return fmt::format("rest: the motion ends at theta = {}", number(m.low, in.theta));
         case SteadyStatus::grows:
-            if (s.question.is_timeless()) return "grows: without bound";
+            if (s.question.is_timeless() || std::isinf(m.growth)) return "grows: without bound";
             return fmt::format("grows: by {} in each period of M", number(m.growth, in.theta));
         case SteadyStatus::none:
             break;
@@ -331,7 +331,9 @@ constexpr lua::Member steady_members[] = {
       "s = system{ I = 1, k = 2, Rd = 1 }:steady{ M = excitation.harmonic{ amplitude = 0.8, omega = 1 } }\n"
       "print(s.status, string.format(\"%.4f %.4f\", s.rest[1], s.rest[2]))  --> adheres\t-0.1000 0.1000"}},
     {lua::a_value<SteadyHandle, steady_growth>,
-     {"s.growth -> number", "If it grows: the growth of the amplitude in a period of M, rad.",
+     {"s.growth -> number",
+      "If it grows: the growth of the amplitude in a period of M, rad; math.huge if it grows "
+      "faster and faster.",
       "s = nondimensional{ friction_ratio = 0.167 }:steady{ M = excitation.harmonic{ frequency = 1 } }\n"
       "print(string.format(\"%.6f\", s.growth))  --> 2.473593"}},
     {lua::a_kept_value<SteadyHandle, run_of_steady>,

@@ -17,6 +17,18 @@ using namespace dinal::model;
 using namespace dinal::motion;
 using namespace dinal::truth;
 
+TEST_CASE("the slope and the bend of a closed form are its derivatives", "[exact]") {
+    const auto made = [](Term term) { return Excitation::make(std::move(term)).value(); };
+    for (const Excitation& M : {made(Exponential{2, 0.8, 0.1}), made(Polynomial{{0.5, -0.4, 0.3, 2}, 0.2}),
+                                harmonic(1.5, 3), made(Harmonic{.amplitude = 2, .omega = 1.7, .phase = 0.4})}) {
+        ClosedForm sum;
+        closed_form(M, 0.7, 0, sum);
+        constexpr double h = 1e-4;
+        CHECK(sum.slope() == within((sum.value(h) - sum.value(-h)) / (2 * h), 1e-6));
+        CHECK(sum.bend() == within((sum.value(h) - 2 * sum.value() + sum.value(-h)) / (h * h), 1e-5));
+    }
+}
+
 TEST_CASE("exact names what it does not accept, and the integrator that accepts it", "[exact]") {
     class Zero : public UserFunction {
         double value(double, const State&) override { return 0; }

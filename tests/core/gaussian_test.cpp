@@ -69,6 +69,7 @@ TEST_CASE("an integrator with a fixed step refuses a bump that it would miss, an
     CHECK(refusal(M, {0, 9}, Dinal1989{0.01}).find("between t = 7.98 and 8.02: use h <= 0.000999") !=
           std::string::npos);
     CHECK(refusal(M, {0, 7}, Rk4{0.005}).empty());
+    CHECK(!refusal(M, {0, 7}, Rk4{0.00501}).empty());
     CHECK(refusal(M, {0, 4}, Rk4{0.1}).empty());
     CHECK(refusal(M, {6, 7}, Rk4{0.1}).empty());
     CHECK(refusal(M.windowed(0, 4), {0, 9}, Rk4{0.1}).empty());

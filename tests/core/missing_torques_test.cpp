@@ -2,6 +2,9 @@
 // less friction.
 #include "analysis/misfit.hpp"
 
+#include <cmath>
+
+#include "analysis/least_squares.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "support/catch.hpp"
@@ -76,6 +79,18 @@ TEST_CASE("a response is the change of a motion, through turns, stops and starts
         differs(viscous, freer, 1 / fast);
         differs(dry, smoother, 1);
     }
+}
+
+TEST_CASE("a parameter between two jumps of the prediction is known to within their distance", "[missing_torques]") {
+    constexpr double apart = 1e-3, noise = 1;
+    const Prediction jumps = [](const Eigen::VectorXd& p) {
+        const double off = p[0] - 1;
+        return Eigen::VectorXd::Constant(4, std::fabs(off) < apart ? off : std::copysign(500, off));
+    };
+    const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+    const auto slope = derivative(jumps, one, {one, 0 * one, one, 0 * one}, noise);
+    REQUIRE(slope);
+    CHECK(slope->norm() == within(noise / apart, 0.1 * noise / apart));
 }
 
 }  // namespace dinal::missing_torques_test

@@ -49,6 +49,22 @@ const Excitation M = Excitation::make(Harmonic{.amplitude = 1, .omega = omega}).
 
 }  // namespace
 
+TEST_CASE("a motion near critical damping keeps its digits on both sides of it", "[exact]") {
+    for (const double beyond : {-1e-3, -1e-8, -1e-13, 0.0, 1e-13, 1e-8, 1e-3, 0.1}) {
+        CAPTURE(beyond);
+        const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = 2 + beyond});
+        const long double delta = system.damping() / 2, square = (delta - 1) * (delta + 1);
+        const long double w = std::sqrt(std::fabs(square));
+        const Run run = must_run(system, {}, {1, 0.5}, {0, 10}, Grid::every(0.25), Exact{});
+        for (Eigen::Index i = 0; i < run.size(); ++i) {
+            const long double t = run.rows(i, 0), swing = square > 0 ? std::cosh(w * t) : std::cos(w * t);
+            const long double moved = w == 0 ? t : (square > 0 ? std::sinh(w * t) : std::sin(w * t)) / w;
+            const long double theta = std::exp(-delta * t) * (swing + (0.5 + delta) * moved);
+            CHECK(run.rows(i, 1) == within(static_cast<double>(theta), 4e-15));
+        }
+    }
+}
+
 TEST_CASE("a very overdamped motion over a million natural periods keeps its digits", "[exact]") {
     constexpr double start = 0.75, end = 6 * std::numbers::pi / omega;
     const auto system = system_of({.inertia = 1, .stiffness = 1, .damping = damping});

@@ -1,9 +1,11 @@
 // The spectrum against the sum that defines it, and against what a window leaves of a sine.
 #include "analysis/spectrum.hpp"
 
+#include <Eigen/Core>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 
 #include "support/catch.hpp"
 #include "support/within.hpp"
@@ -31,6 +33,11 @@ TEST_CASE("the transform equals the sum that defines it", "[spectrum]") {
             }
             REQUIRE(s.amplitude[k] == within(2 * std::abs(sum) / static_cast<double>(n), 1e-13));
         }
+        // By Parseval's theorem the density of one whole segment adds up to the variance.
+        const Eigen::Map<const Eigen::ArrayXd> all(values.data(), static_cast<Eigen::Index>(n));
+        const Spectrum d = density_of(values, 0.1, SpectrumWindow::rectangle, n);
+        const double sum = std::accumulate(d.amplitude.begin(), d.amplitude.end(), 0.0);
+        CHECK(sum * d.frequency[1] == within((all - all.mean()).square().mean(), 1e-13));
     }
 }
 

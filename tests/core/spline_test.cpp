@@ -84,6 +84,9 @@ TEST_CASE("a spline solves all its equations at once, with not-a-knot and period
             M.back() = periodic ? M.front() : M.back();
             const auto period = periodic ? std::optional(t.back() - t.front()) : std::nullopt;
             const Polyline line = through(cubic(t, M, period));
+            std::vector<double> back;
+            for (const double at : t) back.insert(back.begin(), -at);
+            CHECK(through(cubic(back, {M.rbegin(), M.rend()}, period)).most() == within(line.most(), 1e-11));
             const Eigen::VectorXd truth = dense_spline(t, M, periodic);
             for (std::size_t i = 0; i + 1 < points; ++i) {
                 const Eigen::Vector4d piece = truth.segment<4>(4 * static_cast<Eigen::Index>(i));

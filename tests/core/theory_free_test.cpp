@@ -91,6 +91,13 @@ TEST_CASE("free motion with dry friction is exact, event by event and in between
             REQUIRE(std::fabs(motion.at(t).theta - static_cast<double>(y.at(t).theta)) <= 2e-14);
             REQUIRE(std::fabs(motion.at(t).velocity - static_cast<double>(y.at(t).velocity)) <= 2e-13);
         }
+        // Rows at even times, and at times that are almost even.
+        std::vector<double> times, theta(40);
+        for (int j = 0; j < 40; ++j) times.push_back(5 + 0.3 * j + (i % 2 == 0 ? 0 : chance.between(0, 1e-10)));
+        free_decay(system, initial, times, {}, theta);
+        for (std::size_t j = 0; j < times.size(); ++j) {
+            REQUIRE(std::fabs(theta[j] - static_cast<double>(y.at(times[j] - times[0]).theta)) <= 2e-14);
+        }
         const double start = initial.velocity == 0 ? 1 : 0;  // which is not an event
         if (motion.time_to_rest() < end && !y.events().empty()) {
             ++rests;

@@ -30,6 +30,8 @@ test("a misspelt parameter gets a suggestion and the list", function()
         { { zetta = 1 }, "did you mean 'zeta'?" },
         { { friction = 1 }, "did you mean 'friction_ratio'?" },
     })
+    raises_here(function() return theory.magnificaton end, "there is no theory.magnificaton; did you mean 'magnification'?")
+    raises_here(function() return theory[3] end, "there is no theory[3]")
 end)
 
 test("a table of options may have a metatable, but options hidden in it do not count", function()

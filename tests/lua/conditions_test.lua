@@ -173,6 +173,9 @@ test("a sampled jump that drives the motion back from both sides ends the run wi
     equal(run.status, "failed")
     has(run.outcome, "switched endlessly")
     near(run.t_end, 4.8154495, 1e-6)
+    -- Beside one that is read and could slide there, too.
+    local M = excitation.scripted(f) + excitation.scripted(unread(f))
+    has(system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.7, t_end = 40 }.outcome, "switched endlessly")
 end)
 
 test("a function that truncates its digits is noise, not a condition", function()
@@ -181,10 +184,16 @@ test("a function that truncates its digits is noise, not a condition", function(
     says(run, "which are sampled")
 end)
 
-test("math.ceil of the motion jumps where the opposite of math.floor does", function()
-    local function run(M) return system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.5, t_end = 20, dt = 0.1 } end
-    local steps = run(function(_, theta) return math.ceil(theta) / 2 end)
-    near(steps.theta, run(function(_, theta) return -math.floor(-theta) / 2 end).theta, 1e-11)
+test("what rounds or folds the motion jumps where math.floor of it does", function()
+    local function run(M) return system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.5, t_end = 20, dt = 0.1 }.theta end
+    for folded, by_floor in pairs {
+        [function(_, q) return math.ceil(q) / 2 end] = function(_, q) return -math.floor(-q) / 2 end,
+        [function(_, q) return math.fmod(q, 0.8) end] = function(_, q) return q - 0.8 * (q < 0 and -math.floor(-q / 0.8) or math.floor(q / 0.8)) end,
+        [function(_, q) return q % -0.8 end] = function(_, q) return q + 0.8 * math.floor(q / -0.8) end,
+        [function(_, q) return q // 0.8 end] = function(_, q) return math.floor(q / 0.8) end,
+    } do
+        near(run(folded), run(by_floor), 1e-11)
+    end
 end)
 
 test("a narrow window that a square decides is passed whole in M, springs, rates and beside another body", function()

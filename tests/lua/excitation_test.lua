@@ -50,7 +50,7 @@ raises(function() return step + math.huge end, "must be finite, got inf")
 
 -- Delay and window, in either order.
 assert((step + double):delay(1)(3) == 5)
-assert(e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
+assert(tostring(e.ramp{}:window(-math.huge, 3)):find("window(-math.huge, 3", 1, true) and e.ramp{}:window(-math.huge, 3)(2) == 2 and e.ramp{}:window(1, math.huge)(1e6) == 1e6)
 raises(function() return step:window(3, 1) end, "to = 1 must be after from = 3")
 raises(function() return step:window(3) end, "to must be a number, got nil")
 raises(function() return step.delay(1) end, "use a colon: e:delay(d)")

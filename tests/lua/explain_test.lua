@@ -18,6 +18,13 @@ test("a run read from a file, one of 1989 and a failed one have a story, too", f
     says(dinal.partial, "The run stopped early, at t = 3: M failed")
 end)
 
+test("a load that grows exceeds Re, and one that jumps beyond it jumps, however little beyond", function()
+    local block = system { I = 1, k = 0, Rd = 0.5, Re = 1 }
+    for by, words in pairs { [1e-7] = "M jumped so that |M - k theta| = 1.0000001 > Re = 1", [1e-11] = "this torque exceeded Re" } do
+        says(block:simulate { M = excitation.step { amplitude = 1 + by, at = 1 }, t_end = 2 }, words)
+    end
+end)
+
 test("the story of a function says how closely it was sampled, and never that nothing moved the mass", function()
     local sys = nondimensional { friction_ratio = 0.3 }
     local function pulse(t) return ({ t > 3.001 and t < 3.002 and 500 or 0 })[1] end -- the table: not read

@@ -23,9 +23,7 @@ for part in (manual .. "\n## "):gsub("\n###? ", "\n\0"):gmatch "%z([^\0]*)" do
     end
 end
 
-test("docs/manual.md and the pages of its topics are what the program prints", function()
-    assert(read "docs/manual.md" == index, "docs/manual.md is old: run scripts/manual")
-    for name, text in pairs(pages) do assert(read("docs/manual/" .. name .. ".md") == text, name .. ".md is old: run scripts/manual") end
+test("a page that the manual does not have is refused with those that it has", function()
     local pipe <close> = io.popen(('"%s" --manual=nothing 2>&1'):format(program()))
     has(pipe:read "a", "the manual has no page 'nothing': the pages are systems, ")
 end)

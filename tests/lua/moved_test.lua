@@ -24,13 +24,24 @@ test("a moved end of a spring is a shaking support", function()
     near(half.load.theta[#half], run.load.theta[#run], 1e-11)
 end)
 
-test("a body moved at a given velocity is a belt", function()
-    local rig = system { bodies = { disc = { velocity = 0.3 }, block = { I = 1, k = 2, C = 0.05 } }, links = { pad = { "block", "disc", Rd = 0.4, Re = 0.6 } } }
-    local run = rig:simulate { t_end = 30 }
-    local belt = system { I = 1, k = 2, C = 0.05, Rd = 0.4, Re = 0.6 }:simulate { t_end = 30, belt = 0.3 }
-    near(run.block.theta, belt.theta, 1e-11)
-    near(run.disc.theta[#run], 9, 1e-12)
-    closes(run)
+test("a body moved at a given velocity is a belt, whatever rubs on it", function()
+    local pads = {
+        { Rd = 0.4, Re = 0.6 }, { Rd = 0.3, normal = function(t) return 1 + 0.5 * math.sin(0.7 * t) end },
+        { friction = friction.stribeck { Rd = 0.3, Re = 0.6, speed = 0.3 } }, { friction = friction.jenkins { stiffness = 6, Rd = 0.4 } },
+        { friction = friction.lugre { Rd = 0.3, Re = 0.4, speed = 0.2, stiffness = 20, damping = 1 } },
+    }
+    local e = excitation
+    for _, velocity in ipairs { 0.3, e.step { amplitude = 0.7, at = 2 }, e.harmonic { amplitude = 0.6, omega = 1.1 }, e.square { amplitude = 0.5, period = 3 } } do
+        for _, pad in ipairs(pads) do
+            local rig = system { bodies = { disc = { velocity = velocity }, block = { I = 1, k = 2, C = 0.05 } }, links = { pad = merged({ "block", "disc" }, pad) } }
+            local run = rig:simulate { t_end = 30 }
+            local belt = system(merged({ I = 1, k = 2, C = 0.05 }, pad)):simulate { t_end = 30, belt = velocity }
+            near(run.block.theta, belt.theta, 1e-11)
+            equal(#of_kind(run, "stick") + #of_kind(run, "slip"), #of_kind(belt, "stick") + #of_kind(belt, "slip"))
+            assert(velocity ~= 0.3 or math.abs(run.disc.theta[#run] - 9) < 1e-12)
+            closes(run, nil, 1e-9)
+        end
+    end
 end)
 
 test("the ground may be a body, a jump of velocity is an impulse, and a moved body is infinitely heavy", function()
@@ -44,6 +55,15 @@ test("the ground may be a body, a jump of velocity is an impulse, and a moved bo
     near(run:energy().total.input, 1.5, 1e-13)
     equal(run.crank.events.kind[1], "impact")
     closes(run)
+    -- Friction gives no impulse: the load slips until it is as fast.
+    for _, crank in ipairs { { velocity = excitation.step { amplitude = 2, at = 1 } }, { theta = excitation.ramp { slope = 2, at = 1 } } } do
+        local rig = system { bodies = { crank = crank, load = { I = 1, Rd = 0.1 } }, links = { pad = { "crank", "load", Rd = 3 } } }
+        for _, dragged in ipairs { rig:simulate { t_end = 4 }, rig:simulate { t_end = 1 }:continue(4) } do
+            near(dragged.crank.theta[#dragged], 6, 1e-12)
+            near(dragged.load.theta[#dragged], 6 - 2 ^ 2 / (2 * 2.9), 1e-12)
+            closes(dragged)
+        end
+    end
     local struck = system { bodies = { bat = { velocity = 1, I = 1 }, ball = { I = 1 } }, links = { gap = { "bat", "ball", walls = { upper = 0.5, restitution = 1 } } } }
         :simulate { t_end = 1 }
     near(struck.ball.velocity[#struck], 2, 1e-13)
@@ -82,6 +102,17 @@ test("rigid walls of a moved body are refused: they could not stop it", function
     assert(system { bodies = { cam = moved, b = { I = 1 } } })
 end)
 
+test("an angle that is not read is sampled at most run.gap apart", function()
+    local times = {}
+    local angle = function(t) times[#times + 1] = t return 0.3 * math.sin(2 * t) end
+    local rig = system { bodies = { cam = { theta = angle }, b = { I = 1, k = 1, Rd = 0.1 } }, links = { rod = { "b", "cam", k = 3 } } }
+    local run = rig:simulate { t_end = 20, dt = 20 }
+    table.sort(times)
+    local apart = 0
+    for i = 2, #times do apart = math.max(apart, times[i] - times[i - 1]) end
+    near(apart, run.gap, 1e-12)
+end)
+
 test("a moved body is not a system by itself", function()
     local rig = system { bodies = { cam = { theta = 0.1, k = 3 }, b = { I = 1 } }, links = { rod = { "b", "cam", k = 3 } } }
     raises_here(function() return rig.cam end, "sys.cam: cam is moved, and so no system by itself")
@@ -93,9 +124,7 @@ test("the foot of a narrow peak of an angle, whose rounding is that of a great e
     for _, w in ipairs { .1, .0392, 1e-2 } do
         local function angle(t) return .12 * math.exp(-((t - .94135) / w) ^ 2) end
         local rig = system { bodies = { m = { theta = angle }, b = { I = 1, C = .1 } }, links = { s = { "m", "b", k = 4 } } }
-        local clock = os.clock()
         local run = rig:simulate { t_end = 3, dt = 1 }
-        assert(os.clock() - clock < 5)
         local same = system { I = 1, k = 4, C = .1 }:simulate { M = function(t) return 4 * angle(t) end, t_end = 3, dt = 1 }
         near(run.b.theta[#run.b.theta], same.theta[#same.theta], 1e-10)
         near(run.b.velocity[#run.b.velocity], same.velocity[#same.velocity], 1e-10)

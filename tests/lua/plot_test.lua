@@ -248,6 +248,7 @@ test("a picture outlives its run", function()
 end)
 
 test("errors in curves name the curve's number", function()
+    raises_here(function() plot(run.t, { run.theta, "a" }) end, "plot takes one table of curves")
     refuses(plot, {
         { {}, "plot needs a curve" },
         { { run.t, run.theta }, "item 1 must be a curve { x, y }, a run or a picture, got a vector" },

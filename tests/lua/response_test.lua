@@ -188,6 +188,14 @@ test("a spectrum shows each sine with its amplitude, whatever the window", funct
     local prime = sys:simulate{ M = excitation.harmonic{ amplitude = 4, frequency = 1 }, t_end = 3 * 96/97, dt = 3/97 }
     equal(#prime, 97)
     near(prime:spectrum("M").amplitude[4], 4, 1e-9)
+    -- After the transient it is that of the steady motion.
+    local settled = nondimensional{ zeta = 0.2 }:simulate{ M = excitation.harmonic{ frequency = 1 }, theta0 = 3, t_end = 40 }
+    near(settled:spectrum{ from = 24 }.amplitude[17], theory.magnification{ r = 1, zeta = 0.2 }, 1e-9)
+    -- One that comes near to its beginning is not closed.
+    for drift, step in pairs{ [0] = 1, [1e-7] = 64/65 } do
+        local record = sys:simulate{ M = function(t) return math.sin(2 * math.pi * t) + drift * t end, t_end = 1, dt = 1/64 }
+        near(record:spectrum("M").frequency[2], step, 1e-12)
+    end
     raises_here(function() run:spectrum("tetha") end, "did you mean 'theta'?")
     raises_here(function() run:spectrum("theta", { of = "velocity" }) end, "the column is named twice")
     raises_here(function() run:spectrum{ segments = 4 } end, 'segments are of method = "welch"')
@@ -242,6 +250,7 @@ test("poincare samples a run once a period", function()
         raises_here(function() of(M):poincare{} end, "give a period")
     end
     local picture = tostring(d:plot{ show = false })
+    equal(tostring(d:filter(function() return true end):plot{ show = false }), picture)
     assert(picture:find("^ *θ'") and picture:find("θ, Mc/k\n*$"), picture)
     raises_here(function() run:poincare{ period = 1, from = 60 } end, "is not in the run")
     raises_here(function() run:poincare{ period = 1e-9 } end, "samples are more than")
@@ -281,7 +290,10 @@ end)
 test("squeal begins at a Hopf point and ends at a fold, where the sliding of the cycle grazes the belt", function()
     local Rd, Re, C, v0 = 0.3, 0.6, 0.15, 0.3
     local squeal = system{ I = 1, k = 4, C = C, friction = friction.stribeck{ Rd = Rd, Re = Re, speed = v0 } }
-    local c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p) return { belt = p.speed } end }
+    local c = squeal:response{ over = { speed = vector.linspace(0.4, 1, 13) }, at = function(p)
+        assert(p.speed >= 0.4 and p.speed <= 1) -- nothing else is asked for
+        return { belt = p.speed }
+    end }
     equal(table.concat(c.points.kind, " "), "fold hopf")
     local function rows(speed)
         return c:filter(function(row) return math.abs(row.speed - speed) < 1e-9 end):sort("amplitude")
@@ -339,6 +351,27 @@ test("limit cycles begin at a Hopf point: those of van der Pol", function()
     local near_zero = c:filter(function(row) return row.status == "steady" and row.amplitude > 0.05 and row.amplitude < 0.5 end)
     assert(#near_zero > 3)
     for _, row in ipairs(near_zero) do near(row.amplitude, 2 * math.sqrt(row.mu), 1e-3 * row.amplitude) end
+    -- A torque that lags behind the velocity begins them at mu = 0, too: (s^2 + 1)(s + 5) = 5 mu s.
+    local lagging = system{ I = 1, k = 1 }:response{ over = { mu = { -0.5, 0.25, 1 } }, at = function(p)
+        return { M = function(_, theta, _, z) return (p.mu - theta^2) * z.v end, theta0 = 0.1,
+            states = { v = { rate = function(_, _, velocity, z) return 5 * (velocity - z.v) end } } }
+    end }
+    equal(table.concat(lagging.points.kind, " "), "hopf")
+    near(lagging.points.mu[1], 0, 1e-6)
+    equal(table.concat(lagging.status, " "), "rest rest rest steady steady")
+end)
+
+test("a branch that begins at a symmetric motion is right where the problem is symmetric no more", function()
+    local plain, sine = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }, excitation.harmonic{ amplitude = 2, omega = 1.3 }
+    local uneven = {
+        spring = function(e) return plain:with{ spring = spring.polynomial{ [2] = e, [3] = 0.1 } } end,
+        walls = function(e) return plain:with{ walls = { lower = -0.5, upper = 0.5 + e, restitution = 0.6 } } end,
+    }
+    for name, at in pairs(uneven) do
+        local c = plain:response{ over = { e = { 0, 0.1, 0.2 } }, at = function(p) return { M = sine, system = at(p.e) } end }
+        equal(#c, 3, name)
+        for _, row in ipairs(c) do near(row.amplitude, at(row.e):steady{ M = sine }.amplitude, 1e-8) end
+    end
 end)
 
 test("at a pitchfork the motion ceases to be symmetric", function()

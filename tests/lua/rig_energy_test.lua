@@ -40,6 +40,22 @@ test("the energy adds up with everything that several bodies may have", function
     says(run, "3 bodies and 3 links", "a rubs on a belt", "gap links a and c. It has no dry friction", "hit the walls", "Energy came from", "the friction of pad")
 end)
 
+test("the rows of the table of several bodies show the numbers of each", function()
+    local a, link = { I = 1, k = 4, C = 0.1, Rd = 0.2 }, { k = 3, C = 0.05, Rd = 0.1 }
+    local energy = pair(a, { I = 1, C = 0.3 }, link):simulate { velocity0 = { a = 1 }, M = { b = 2 }, t_end = 9 }:energy()
+    local columns, rows = { "input", "kinetic", "spring", "viscous", "dry" }, 0
+    for name, numbers in tostring(energy):gsub("\n  error.*", ""):gmatch "\n  (%l+) +(%-?%d[^\n]*)" do
+        local i = 0
+        for number in numbers:gmatch "%S+" do
+            i = i + 1
+            near(tonumber(number), (name == "all" and energy.total or energy[name])[columns[i]], 1e-5 * energy.total.flow)
+        end
+        equal(i, 5, name)
+        rows = rows + 1
+    end
+    equal(rows, 4)
+end)
+
 test("the energy adds up for one body with varying friction and bristles, and for a locked pair on a belt", function()
     local one = system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate { theta0 = 1.03, t_end = 20 }:energy()
     local run = system { I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }:simulate { theta0 = 1.03, t_end = 20 }

@@ -27,7 +27,7 @@ test("a function of one parameter is called with t alone, one of more parameters
     local run = nd:simulate { M = math.sin, t_end = 1, dt = 0.5 }
     equal(run.M[3], math.sin(1))
     local callable = setmetatable({}, { __call = function(_, t) return 2 * t end })
-    equal(nd:simulate { M = callable, t_end = 1, dt = 1 }.M[2], 2.0)
+    equal(nd:simulate { M = callable, belt = callable, t_end = 1, dt = 1 }.M[2], 2.0)
 end)
 
 test("the default integrator is exact if that accepts M, otherwise spectral", function()

@@ -354,6 +354,10 @@ test("linear growth has the rate of its closed form", function()
     near(system{ I = 1, k = 1, Rd = 0.05 }:steady{ M = beside }.growth, 2 * (0.8 * math.pi - 0.2), 1e-9)
     local fed = system{ I = 1, k = 1 }:steady{ M = function(_, _, v) return v > 0 and 0.1 or -0.1 end, velocity0 = 1 }
     near(fed.growth, 0.4, 0.02)
+    -- what grows exponentially has no such rate
+    local driven = system{ I = 1, k = 1 }:steady{ M = function(t, _, v) return math.sin(0.7 * t) + 0.05 * v end, omega = 0.7 }
+    equal(driven.growth, math.huge)
+    equal(tostring(driven), "grows: without bound")
 end)
 
 test("a search begins with the states of the run, and after a step of M is over", function()
@@ -365,6 +369,11 @@ test("a search begins with the states of the run, and after a step of M is over"
     local rubbed = system{ I = 1, k = 4, Rd = 0.3, Re = 0.6 }
     local function mean(M) return rubbed:steady{ M = M, belt = 0.1 }.mean end
     near(mean(excitation.step{ amplitude = 1, at = 5 }), mean(1.0), 1e-8)
+    -- a state that settles slowly is no freedom
+    local slow = rubbed:steady{ M = excitation.harmonic{ amplitude = 2, omega = 1.1 },
+        states = { z = { start = 0.5, rate = function(_, _, _, z) return 1e-4 * (0.3 - z.z) end } } }
+    near(slow.multipliers[1].abs, math.exp(-1e-4 * slow.period), 1e-9)
+    equal(slow.unique, "not seen")
     -- a mass that stands while a state still moves is not at rest
     local s = system{ I = 1, k = 4, Rd = 0.5 }:steady{ M = function(_, _, _, z) return 2 * z.z end,
         states = { z = { start = 0.1, rate = function(_, _, _, z) return 0.05 * (z.z - z.z^3) end } } }

@@ -82,6 +82,7 @@ test("extremes end at rest or at count, which is required otherwise", function()
     local sys = nondimensional { friction_ratio = 0.1 }
     equal(#theory.extremes { system = sys, theta0 = 0.55, count = 2 }, 2)
     equal(#theory.extremes { system = nondimensional {}, theta0 = 1, count = 5 }, 5)
+    equal(#theory.extremes { system = sys, theta0 = 0.55, count = 9 }, #theory.extremes { system = sys, theta0 = 0.55 })
     refuses(theory.extremes, {
         { { system = nondimensional {}, theta0 = 1 }, "theory.extremes: count is needed, because this motion never comes to rest" },
         { { system = nondimensional { friction_ratio = 1e-12 }, theta0 = 1 }, "count is needed, because there are 5e+11 extremes until rest" },
@@ -100,12 +101,15 @@ test("wrong values are refused with the option, the element and the limit", func
     refuses(theory.free_response, {
         { { t = 1, theta0 = 1 }, "theory.free_response needs system, for example" },
         { { t = { 1, -1 }, system = nd, theta0 = 1 }, "t[2] = -1 must not be negative" },
+        { { t = 1, system = nd:with { walls = { upper = 2 } } }, "the closed forms do not include walls" },
+        { { t = 1, system = nd:with { spring = spring.polynomial { [3] = 1 } } }, "include only the spring k theta" },
+        { { t = 1, system = nd:with { friction = friction.stribeck { Rd = 1, Re = 2, speed = 1 } } }, "include only Coulomb friction" },
     })
     refuses(theory.logarithmic_decrement, {
         { { zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
     })
-    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = 0.2 } end,
-        "breakaway_ratio = 0.2 must be at least friction_ratio = 0.3")
+    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = { 0.4, 0.2 } } end,
+        "breakaway_ratio[2] = 0.2 must be at least friction_ratio = 0.3")
     raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end, "r = 1e-05 must be 0 or from 0.0001 to 1e6")
     raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")
 end)

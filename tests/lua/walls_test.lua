@@ -131,11 +131,6 @@ test("a mass that reaches a wall at velocity 0 does not hit it, despite rounding
     end
 end)
 
-test("a mass that leans on a wall has zero acceleration", function()
-    local run = system { I = 1, k = 1, walls = { upper = 1, restitution = 0 } }:simulate { M = 2, t_end = 4, dt = 0.5 }
-    equal(run.acceleration[#run], 0.0)
-end)
-
 test("a body that leaned on another goes on when that one stops dead at a wall", function()
     -- The loads press b2 against b1 and leave both their common velocity -1. b1 stops at t = 1, and b2 goes on under its
     -- own load, from -0.7.

@@ -16,6 +16,7 @@ import os
 import pathlib
 import pickle
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -762,19 +763,23 @@ class Help(unittest.TestCase):
         self.assertIn("simulate", pydoc.render_doc(dinal.System))
 
     def test_examples(self):
-        """Those that are shown in Python are Python."""
+        """Those that are shown in Python are Python, and print the numbers that they say."""
+        def numbers(text):
+            return [float(number) for number in re.findall(r"(?<![\w.])[-+]?\d+\.?\d*(?:e[-+]?\d+)?", text)]
+
         shown = 0
-        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder), contextlib.redirect_stdout(io.StringIO()):
+        with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
             for *_, members in dinal._dinal.sections:
                 for text in filter(None, (dinal._words.python(member["example"]) for member in members)):
                     if "dinal." in text and "dinal.vector" not in text and "dinal.version" not in text:
-                        exec(text, {"dinal": dinal, "numpy": np, "math": math})
+                        with contextlib.redirect_stdout(io.StringIO()) as printed:
+                            exec(text, {"dinal": dinal, "numpy": np, "math": math})
+                        np.testing.assert_allclose(numbers(printed.getvalue()), numbers(" ".join(re.findall("# (.*)", text))), 1e-5, err_msg=text)
                         shown += 1
         self.assertGreater(shown, 140)
 
     def test_every_member_is_there(self):
         manual = "\n".join(page.read_text() for page in sorted(pathlib.Path(SOURCE, "docs/manual").glob("*.md")))
-        import re
         owners = {"excitation": dinal.excitation, "theory": dinal.theory, "friction": dinal.friction,
                   "integrator": dinal.integrator, "run": dinal.Run, "sys": dinal.System}
         members = set(re.findall(r"^(?:### |- `)(%s)[.:](\w+)" % "|".join(owners), manual, re.M))

@@ -45,11 +45,15 @@ def leave(p):
     sys.exit(7)
 
 
-def die(p):
-    if p.r == 5 and not os.path.exists("died"):
-        pathlib.Path("died").touch()
+def die(p, places=(5,)):
+    if p.r in places and not os.path.exists(f"died{p.r}"):
+        pathlib.Path(f"died{p.r}").touch()
         os.kill(os.getpid(), signal.SIGKILL)
     return {"y": p.r}
+
+
+def die_often(p):
+    return die(p, (4, 9, 14, 18))
 
 
 MAP = """
@@ -244,9 +248,8 @@ class Deaths(InAFolder):
             dinal.sweep(over=over, run=die, executor=pool, file="map.csv")
         self.assertIsInstance(dinal.partial, dinal.Data)
         self.assertEqual(dinal.sweep(over=over, run=die, file="map.csv").y.tolist(), list(range(20)))
-        os.remove("died")
         told = []
-        m = dinal.sweep(over=over, run=die, executor=lambda: cf.ProcessPoolExecutor(2), progress=lambda *now: told.append(now))
+        m = dinal.sweep(over=over, run=die_often, executor=lambda: cf.ProcessPoolExecutor(2), progress=lambda *now: told.append(now))
         self.assertEqual((m.y.tolist(), told[-1]), (list(range(20)), (20, 20)))
 
     def started(self, engine):

@@ -122,7 +122,8 @@ void Engine::begin() {
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) contacts_.of[j].leaned = now_.mode.leans[j] != 0;
     } else {
-        project(now_.side());
+        // What sticks to a belt has its velocity before the break, as at the end of a stretch.
+        project(now_.after_break ? Side::before : Side::at);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
             contacts_.of[j].creeping = event_at(mechanics_, now_, EventKind::stick, j);
@@ -416,7 +417,13 @@ bool Engine::ask_after_break() {
     // A jump of a prescribed velocity throws all bodies that are linked to it rigidly.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
-    if (problem_.hidden > 0) project(now_.side());
+    if (problem_.hidden > 0) {
+        // Friction gives no impulse: what only sticks to a body that is thrown slips.
+        Mode sticking = now_.mode;
+        for (std::size_t j = 0; j < told_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
+        project(now_.side());
+        now_.mode = std::move(sticking);
+    }
     for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
         const double v = now_.y[n() + body], jump = v - before[n() + body];

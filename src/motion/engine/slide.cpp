@@ -391,6 +391,27 @@ std::vector<std::pair<Piecewise*, Piecewise>> Slides::all_functions(double t) {
     return all;
 }
 
+/// Returns whether a function that is not read jumps at the surface, too: it has no share and would stay on one side.
+bool Slides::others_jump(const Sliding& of, const Now& now, const Sides& sides) const {
+    if (!mechanics_.samples_the_motion()) return false;
+    constexpr double clearly = 1e-2;
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> ahead = now.y, behind = now.y;
+    double jump = 0, other = 0;
+    for (std::size_t k = n; k < now.y.size(); ++k) {
+        const double change = sides.beyond.rates[k] - sides.own.rates[k], away = near * unit_ * change;
+        ahead[k] += away, behind[k] -= away;
+        if (k < 2 * n) ahead[k - n] += unit_ * away, behind[k - n] -= unit_ * away;
+        jump += std::fabs(change);
+    }
+    of.ask(Which::own);
+    const std::vector<double> rates_ahead = rates_at({now.t.hi, now.side(), ahead}),
+                              rates_behind = rates_at({now.t.hi, now.side(), behind});
+    of.ask(Which::both);
+    for (std::size_t k = n; k < now.y.size(); ++k) other += std::fabs(rates_ahead[k] - rates_behind[k]);
+    return other > clearly * jump;
+}
+
 std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& crossing, Now& now) {
     auto owner = owner_of(function, now.t.hi);
     if (!owner || (crossing.of_place && !owner->joint)) return {};
@@ -407,7 +428,7 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& 
     Begun begun;
     put_on_surface(*owner, *first, now, begun.work);
     const auto sides = decide(*owner, now, first->mixed());
-    if (!sides || !drive_back(*owner, now, *sides)) return no();
+    if (!sides || !drive_back(*owner, now, *sides) || others_jump(*owner, now, *sides)) return no();
     sliding_.push_back(*owner);
     owner->tell(true, begun.changes.slides);
     owner->each([&](Piecewise& each) { begun.changes.functions.push_back(&each); });

@@ -102,6 +102,7 @@ private:
         void ask(Piecewise::Slide::Side which) const;
         void tell(bool begins, std::vector<SlideChange>& changes) const;
     };
+    [[nodiscard]] bool others_jump(const Sliding& of, const Now& now, const Sides& sides) const;
     [[nodiscard]] bool passes_fade(const Sliding& of, const Now& now, const Sides& sides);
     [[nodiscard]] std::vector<double> rates_at(const Moment& at) const;
     [[nodiscard]] Side side_of(const Sliding& of, const Moment& at, std::vector<double> rates) const;
