@@ -148,9 +148,9 @@ text::Expected<Energy> energy_of(const motion::Run& run, Whose whose) {
             "one of them and without dense = false"};
     }
     if (whole_until < model::never) {
-        return text::Error{fmt::format(
+        return text::error(
             "the motion was kept only up to t = {:.6g}, for lack of memory: simulate in parts of at most that length",
-            whole_until)};
+            whole_until);
     }
     if (!(run.t_stop > run.t_start)) {
         return text::Error{"there is no motion to integrate over: the run ended where it started"};

@@ -1172,23 +1172,22 @@ text::Expected<Identified> identify(const IdentifyQuestion& question, const moti
         std::ranges::count_if(all_unknowns, [&](Unknown which) { return is_sought(question, which); }));
     const std::size_t least = std::max<std::size_t>(8, unknowns + 1);
     if (n < least || question.theta.size() != n) {
-        return text::Error{
-            fmt::format("the record has {} samples; for {} unknowns at least {} are needed", n, unknowns, least)};
+        return text::error("the record has {} samples; for {} unknowns at least {} are needed", n, unknowns, least);
     }
     for (std::size_t i = 0; i < n; ++i) {
         if (!std::isfinite(question.t[i]) || !std::isfinite(question.theta[i])) {
-            return text::Error{fmt::format("sample {} of the record is not a finite number", i + 1)};
+            return text::error("sample {} of the record is not a finite number", i + 1);
         }
         if (i > 0 && !(question.t[i] > question.t[i - 1])) {
-            return text::Error{
-                fmt::format("the times of the record must increase, but sample {} at t = {:.6g} is not "
-                            "after sample {} at t = {:.6g}",
-                            i + 1, question.t[i], i, question.t[i - 1])};
+            return text::error(
+                "the times of the record must increase, but sample {} at t = {:.6g} is not "
+                "after sample {} at t = {:.6g}",
+                i + 1, question.t[i], i, question.t[i - 1]);
         }
     }
     const auto [low, high] = std::ranges::minmax_element(question.theta);
     if (*low == *high) {
-        return text::Error{fmt::format("nothing moves in the record: all samples are {:.6g}", *low)};
+        return text::error("nothing moves in the record: all samples are {:.6g}", *low);
     }
     return Identification(question, monitor).identified();
 }

@@ -27,16 +27,16 @@ animation::Take asked_take(const lua::Options& options, const AnimateOptions& as
     animation::Take take{.from = asked.from.value_or(run.t_start), .to = asked.to.value_or(run.t_stop)};
     if (!(take.from < take.to) || take.from < run.t_start || take.to > run.t_stop) {
         options.fail(asked.from ? "from" : "to",
-                     fmt::format("from = {:.6g} and to = {:.6g} must be times of the run, which goes "
-                                 "from {:.6g} to {:.6g}, one after the other",
-                                 take.from, take.to, run.t_start, run.t_stop));
+                     "from = {:.6g} and to = {:.6g} must be times of the run, which goes "
+                     "from {:.6g} to {:.6g}, one after the other",
+                     take.from, take.to, run.t_start, run.t_stop);
     }
     take.seconds = asked.speed ? (take.to - take.from) / *asked.speed : usual_seconds;
     if (take.steps() > most_frames) {
         options.fail("speed",
-                     fmt::format("speed = {:.6g} makes an animation of {:.4g} s, {:.0f} s are the most: give a greater "
-                                 "speed, or a part of the run by from and to",
-                                 *asked.speed, take.seconds, most_frames / animation::Take::frames_per_second));
+                     "speed = {:.6g} makes an animation of {:.4g} s, {:.0f} s are the most: give a greater "
+                     "speed, or a part of the run by from and to",
+                     *asked.speed, take.seconds, most_frames / animation::Take::frames_per_second);
     }
     return take;
 }

@@ -197,7 +197,7 @@ int data_other_key(lua_State* L) {
     const lua_Integer i = lua_tointegerx(L, 2, &is_integer);
     if (lua_type(L, 2) != LUA_TNUMBER) return 0;
     if (is_integer != 0 && i < 0) {
-        lua::raise(L, {.sentence = fmt::format("d[{}]: rows are counted from 1; the last one is d[#d]", i)});
+        lua::raise(L, "d[{}]: rows are counted from 1; the last one is d[#d]", i);
     }
     if (is_integer == 0 || i < 1 || i > static_cast<lua_Integer>(data->size())) {
         lua_pushnil(L);
@@ -345,8 +345,7 @@ namespace {
 /// Reads the parameter values on the top of the stack.
 DataColumn parameter_on_top(lua_State* L, const lua::Options& options, const std::string& name) {
     if (!lua_istable(L, -1) && lua::test<lua::Vector>(L, -1) == nullptr) {
-        options.fail("over",
-                     fmt::format("over.{} must be a vector or a table of values, got {}", name, lua::describe(L, -1)));
+        options.fail("over", "over.{} must be a vector or a table of values, got {}", name, lua::describe(L, -1));
     }
     if (lua_istable(L, -1)) {
         const bool of_words = lua_rawgeti(L, -1, 1) == LUA_TSTRING;
@@ -354,7 +353,7 @@ DataColumn parameter_on_top(lua_State* L, const lua::Options& options, const std
         if (of_words) return read_column(L, options.call(), name);
     }
     std::vector<double> numbers = lua::numbers_at(L, -1, options.call(), name);
-    if (numbers.empty()) options.fail("over", fmt::format("{} has no values", name));
+    if (numbers.empty()) options.fail("over", "{} has no values", name);
     return column_of(name, std::move(numbers));
 }
 
@@ -367,8 +366,7 @@ std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& optio
     std::vector<DataColumn> parameters = columns_in(
         L, lua_gettop(L), [&](const std::string& name) { return parameter_on_top(L, options, name); },
         [&](lua_Integer i) {
-            options.fail("over",
-                         fmt::format("over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", i));
+            options.fail("over", "over[{}] must be a name and its values, {{ \"r\", v }}; or name them, r = v", i);
         });
     if (parameters.empty()) options.wrong("over");
     lua_pop(L, 1);
@@ -379,13 +377,13 @@ std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& optio
             options.fail("over", "'error' is the column of messages: give the parameter another name");
         }
         if (!names.insert(parameter.name).second) {
-            options.fail("over", fmt::format("there are two parameters '{}'", parameter.name));
+            options.fail("over", "there are two parameters '{}'", parameter.name);
         }
         points *= static_cast<double>(parameter.size());
     }
     constexpr double most = 1e9;
     if (points > most) {
-        options.fail({fmt::format("{:.3g} points are more than the {:.0e} that one sweep can hold", points, most)});
+        options.fail(text::error("{:.3g} points are more than the {:.0e} that one sweep can hold", points, most));
     }
     return parameters;
 }
@@ -393,12 +391,12 @@ std::vector<DataColumn> asked_parameters(lua_State* L, const lua::Options& optio
 std::vector<DataColumn> varied_in(lua_State* L, const lua::Options& options) {
     std::vector<DataColumn> parameters = asked_parameters(L, options);
     if (parameters.size() > 2) {
-        options.fail("over", fmt::format("over has {} names: a response varies one or two, and sweep varies more",
-                                         parameters.size()));
+        options.fail("over", "over has {} names: a response varies one or two, and sweep varies more",
+                     parameters.size());
     }
     for (const DataColumn& parameter : parameters) {
         if (parameter.numbers() == nullptr) {
-            options.fail("over", fmt::format("over.{} must be a list of numbers", parameter.name));
+            options.fail("over", "over.{} must be a list of numbers", parameter.name);
         }
     }
     return parameters;
@@ -504,8 +502,7 @@ int filter(lua_State* L) {
         lua::raise_got(L, 2, "d:filter", "d:filter takes a function of a row, or a vector with a number for each row");
     }
     if (mask != nullptr && mask->size() != data->size()) {
-        lua::fail(L, "d:filter",
-                  {fmt::format("the vector has {} numbers, but there are {} rows", mask->size(), data->size())});
+        lua::fail(L, "d:filter", "the vector has {} numbers, but there are {} rows", mask->size(), data->size());
     }
     std::vector<std::size_t> rows;
     for (std::size_t i = 0; i < data->size(); ++i) {
@@ -646,9 +643,8 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     constexpr double sparse = 16;  // maximum number of grid points per row; scattered points would form a huge grid
     const double places = static_cast<double>(shades.x.size()) * static_cast<double>(shades.y.size());
     if (shades.x.empty() || shades.y.empty() || places > sparse * static_cast<double>(z.size())) {
-        options.fail(
-            "z", fmt::format("{} and {} form no grid: {} rows have {} different values of {} and {} of {}", names[0],
-                             names[1], z.size(), shades.x.size(), names[0], shades.y.size(), names[1]));
+        options.fail("z", "{} and {} form no grid: {} rows have {} different values of {} and {} of {}", names[0],
+                     names[1], z.size(), shades.x.size(), names[0], shades.y.size(), names[1]);
     }
     shades.z.assign(shades.x.size() * shades.y.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<bool> filled(shades.z.size());
@@ -656,9 +652,10 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
         if (!is_drawn(x[row], xlog) || !is_drawn(y[row], ylog)) continue;
         const std::size_t place = place_among(shades.y, y[row]) * shades.x.size() + place_among(shades.x, x[row]);
         if (filled[place]) {
-            options.fail("z", fmt::format("there are two rows with {} = {:.6g}, {} = {:.6g}: pick one, as with "
-                                          "d:filter",
-                                          names[0], x[row], names[1], y[row]));
+            options.fail("z",
+                         "there are two rows with {} = {:.6g}, {} = {:.6g}: pick one, as with "
+                         "d:filter",
+                         names[0], x[row], names[1], y[row]);
         }
         filled[place] = true;
         shades.z[place] = z[row];
@@ -852,7 +849,7 @@ std::vector<plots::Curve> overlay_curves(const lua::Options& options, const Data
     for (const auto& [column, numbers] : {std::pair(&x, &curve.x), std::pair(&y, &curve.y)}) {
         const DataColumn* found = drawn.find(*column);
         if (found == nullptr || found->numbers() == nullptr) {
-            options.fail("overlay", fmt::format("the overlay '{}' has no {}", name, *column));
+            options.fail("overlay", "the overlay '{}' has no {}", name, *column);
         }
         const std::span<const double> values = found->numbers()->values();
         *numbers = plots::Numbers::own({values.begin(), values.end()});
@@ -905,9 +902,8 @@ DrawnColumns asked_columns(lua_State* L, const lua::Options& options, const Data
     const bool curves = !y.empty() || options.has("style");
     const bool is_map = over.size() > 1 && (!z.empty() || (x.empty() && !curves));
     if (is_map && z.empty() && over.size() > 2) {
-        options.fail(
-            {fmt::format("points over {} are not a map: pick those of one {} with d:filter, or name x, y and z",
-                         fmt::join(over, ", "), over.front())});
+        options.fail(text::error("points over {} are not a map: pick those of one {} with d:filter, or name x, y and z",
+                                 fmt::join(over, ", "), over.front()));
     }
     if (x.empty() && !over.empty()) x = {over.size() == 2 && !is_map ? over[1] : over[0]};
     if (x.empty()) x.push_back(data.points_over.empty() ? data.columns.front().name : data.points_over);

@@ -267,8 +267,7 @@ int values(lua_State* L) {
             begin + excitation.fill(std::span(times).subspan(begin, count), std::span(result).subspan(begin, count));
         call.check();
         if (filled < begin + count) {
-            lua::fail(L, "e:values(times)",
-                      {fmt::format("M = {} at t = {:.14g} is not finite", result[filled], times[filled])});
+            lua::fail(L, "e:values(times)", "M = {} at t = {:.14g} is not finite", result[filled], times[filled]);
         }
         if (lua::interrupt_requested()) {
             lua::raise_interrupted(L);
@@ -349,7 +348,7 @@ int window(lua_State* L) {
     const double from = window_edge(L, 2, "from");
     const double to = window_edge(L, 3, "to");
     if (!(from < to)) {
-        lua::fail(L, "e:window(from, to)", {fmt::format("to = {} must be after from = {}", to, from)});
+        lua::fail(L, "e:window(from, to)", "to = {} must be after from = {}", to, from);
     }
     lua::push(L, excitation.windowed(from, to));
     return 1;
@@ -374,7 +373,7 @@ int subtract(lua_State* L) {
 /// Pushes the excitation at `index` times `gain`.
 int push_scaled(lua_State* L, int index, double gain) {
     if (!std::isfinite(gain)) {
-        lua::raise(L, fmt::format("an excitation cannot be scaled by {}", gain));
+        lua::raise(L, "an excitation cannot be scaled by {}", gain);
     }
     lua::push(L, lua::test<model::Excitation>(L, index)->scaled(gain));
     return 1;
@@ -639,9 +638,9 @@ void check_times(const lua::Options& options, const std::string& file, const fil
     for (Eigen::Index i = 1; i < t.size(); ++i) {
         if (!(t[i] > t[i - 1])) {
             options.fail(
-                {fmt::format("{}: row {} of the numbers has {} = {}, which is not after {} in the row "
-                             "before; times must increase",
-                             file, i + 1, table.names[static_cast<std::size_t>(column)], t[i], t[i - 1])});
+                text::error("{}: row {} of the numbers has {} = {}, which is not after {} in the row "
+                            "before; times must increase",
+                            file, i + 1, table.names[static_cast<std::size_t>(column)], t[i], t[i - 1]));
         }
     }
 }
@@ -655,10 +654,10 @@ int samples_from_file(lua_State* L) {
     }
     const files::Table table = options.value_or_fail(files::table_of(options.value_or_fail(std::move(read))));
     if (table.values.rows() == 0) {
-        options.fail({fmt::format("{} has names but no rows of numbers", file)});
+        options.fail(text::error("{} has names but no rows of numbers", file));
     }
     if (table.values.cols() < 2) {
-        options.fail({fmt::format("{} has only one column; times and values are two", file)});
+        options.fail(text::error("{} has only one column; times and values are two", file));
     }
     const Eigen::Index time = samples_column(L, options, file, table, "time", {"t", "time"}, 0);
     const Eigen::Index value = samples_column(L, options, file, table, "value", {"M"}, time == 1 ? 0 : 1);
@@ -814,8 +813,8 @@ int relay_controller(lua_State* L) {
     RelayOptions asked;
     options.fill(asked);
     if (asked.on == asked.off) {
-        options.fail("off", fmt::format("on = {:.6g} and off = {:.6g} must differ: between them it stays as it is",
-                                        asked.on, asked.off));
+        options.fail("off", "on = {:.6g} and off = {:.6g} must differ: between them it stays as it is", asked.on,
+                     asked.off);
     }
     options.push("amplitude");
     const bool one = lua_type(L, -1) == LUA_TNUMBER;
@@ -824,8 +823,8 @@ int relay_controller(lua_State* L) {
     const std::vector<double> torques = one ? std::vector{alone, -alone} : options.numbers("amplitude");
     if (!options.has("amplitude")) options.missing("amplitude");
     if (torques.size() != 2) {
-        options.fail("amplitude", fmt::format("amplitude must be {}, got {} number{}", options.row("amplitude").wanted,
-                                              torques.size(), torques.size() == 1 ? "" : "s"));
+        options.fail("amplitude", "amplitude must be {}, got {} number{}", options.row("amplitude").wanted,
+                     torques.size(), torques.size() == 1 ? "" : "s");
     }
     controller->on = asked.on, controller->off = asked.off;
     controller->levels = {torques[0], torques[1]};

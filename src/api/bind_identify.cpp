@@ -139,8 +139,8 @@ Data record_of(lua_State* L, const lua::Options& options) {
         record.columns = (*data)->columns;
     } else if (const auto* run = lua::test<RunHandle>(L, place)) {
         if ((*run)->of_all() && !options.has("system")) {
-            options.fail("data", fmt::format("a run of several bodies needs system = ..., or data = run.{} alone",
-                                             (*run)->system().joints.front().name));
+            options.fail("data", "a run of several bodies needs system = ..., or data = run.{} alone",
+                         (*run)->system().joints.front().name);
         }
         record = rows_of(*run);
     } else if (lua_istable(L, place)) {
@@ -169,12 +169,12 @@ std::span<const double> record_numbers(lua_State* L, const lua::Options& options
     for (const std::string_view name : names) found = found == nullptr ? record.find(name) : found;
     if (found == nullptr && place < record.columns.size()) found = &record.columns[place];
     if (found == nullptr) {
-        options.fail({fmt::format("the record has {}; times and angles are needed",
-                                  text::counted(record.columns.size(), "column"))});
+        options.fail(text::error("the record has {}; times and angles are needed",
+                                 text::counted(record.columns.size(), "column")));
     }
     if (found->numbers() == nullptr) {
-        options.fail({fmt::format("the column '{}' of the record holds words, such as {}", found->name,
-                                  first_word(found->words()))});
+        options.fail(text::error("the column '{}' of the record holds words, such as {}", found->name,
+                                 first_word(found->words())));
     }
     return found->numbers()->values();
 }
@@ -195,7 +195,7 @@ void take_record(lua_State* L, const lua::Options& options, const IdentifyOption
     const auto t = record_numbers(L, options, record, asked.t, {"t", "time"}, 0);
     const auto theta = record_numbers(L, options, record, asked.theta, {"theta", "x", "angle"}, 1);
     if (t.size() != theta.size()) {
-        options.fail({fmt::format("the record has {} times, but {} angles", t.size(), theta.size())});
+        options.fail(text::error("the record has {} times, but {} angles", t.size(), theta.size()));
     }
     for (std::size_t i = 0; i < t.size(); ++i) {
         if (std::isnan(t[i]) || std::isnan(theta[i])) continue;
@@ -217,7 +217,7 @@ std::vector<std::string> free_names(lua_State* L, const lua::Options& options) {
 void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions& asked,
                 analysis::IdentifyQuestion& question) {
     if (asked.Re && asked.Rd && *asked.Re < *asked.Rd) {
-        options.fail({fmt::format("Re = {:.6g} must be at least Rd = {:.6g}", *asked.Re, *asked.Rd)});
+        options.fail(text::error("Re = {:.6g} must be at least Rd = {:.6g}", *asked.Re, *asked.Rd));
     }
     const auto number = [&](const char* name) {
         return options.has(name) ? std::optional(options.number(name)) : std::nullopt;
@@ -236,7 +236,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
                           .cure = text::did_you_mean(name, analysis::unknown_names)});
         }
         const auto place = static_cast<std::size_t>(known - analysis::unknown_names.begin());
-        if (question.given[place]) options.fail({fmt::format("{} is given, so it cannot be fitted", name)});
+        if (question.given[place]) options.fail(text::error("{} is given, so it cannot be fitted", name));
         held[place] = false;
     }
     for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
@@ -244,7 +244,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
         if (which != Unknown::I && which != Unknown::k) {
             at(question.given, which) = 0;  // an Re below Rd is raised to Rd
         } else if (question.M) {
-            options.fail({fmt::format("{} is neither given nor in free", at(analysis::unknown_names, which))});
+            options.fail(text::error("{} is neither given nor in free", at(analysis::unknown_names, which)));
         }
     }
 }
@@ -431,7 +431,7 @@ public:
             known_until_.push_back(static_cast<Eigen::Index>(all.size()));
         }
         if (all.size() < free_.size() + 4) {
-            options_.fail({fmt::format("{} numbers are too few to fit {} parameters", all.size(), free_.size())});
+            options_.fail(text::error("{} numbers are too few to fit {} parameters", all.size(), free_.size()));
         }
         question.columns = column_of_, question.times = time_of_;
         question.measured = Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
@@ -470,8 +470,7 @@ private:
         system_ = **system;
         lua_pop(L_, 1);
         for (const char* name : {"I", "k", "C", "Rd", "Re"}) {
-            if (options_.has(name))
-                options_.fail(name, fmt::format("{} is part of the first guess, system = ...", name));
+            if (options_.has(name)) options_.fail(name, "{} is part of the first guess, system = ...", name);
         }
     }
 
@@ -523,8 +522,8 @@ private:
         for (auto& [column, name] : asked_columns()) {
             const auto numbers = record_numbers(L_, options_, record_, name, {}, 0);
             if (numbers.size() != t.size()) {
-                options_.fail({fmt::format("the record has {} times, but {} numbers in the column '{}'", t.size(),
-                                           numbers.size(), name)});
+                options_.fail(text::error("the record has {} times, but {} numbers in the column '{}'", t.size(),
+                                          numbers.size(), name));
             }
             column.numbers.assign(numbers.begin(), numbers.end());
             columns_.push_back(std::move(column));
@@ -552,7 +551,7 @@ private:
         for (std::size_t i = 0; i + 1 < t_.size(); ++i) {
             if (!(t_[i] < t_[i + 1])) {
                 options_.fail(
-                    {fmt::format("times must increase, but t = {:.6g} is followed by {:.6g}", t_[i], t_[i + 1])});
+                    text::error("times must increase, but t = {:.6g} is followed by {:.6g}", t_[i], t_[i + 1]));
             }
         }
     }
@@ -716,8 +715,7 @@ private:
             return;
         }
         if (is_function(name)) {
-            options_.fail("free",
-                          fmt::format("free has '{}', but that is a function: only numbers can be fitted", name));
+            options_.fail("free", "free has '{}', but that is a function: only numbers can be fitted", name);
         }
         options_.fail(
             {.sentence = fmt::format("free has '{}', which is no number of the system, such as {}, and none of "
@@ -928,7 +926,7 @@ private:
         for (const MeasuredColumn& column : columns_) {
             lua_getfield(L_, -1, column.name.c_str());
             const auto* vector = lua::test<lua::Vector>(L_, -1);
-            if (vector == nullptr) options_.fail({fmt::format("the runs of this system have no {}", column.name)});
+            if (vector == nullptr) options_.fail(text::error("the runs of this system have no {}", column.name));
             std::vector<double>& numbers = columns.emplace_back(vector->begin(), vector->end());
             lua_pop(L_, 1);
             if (column.quantity != Measure::theta) continue;
@@ -1080,8 +1078,7 @@ int identify_record(lua_State* L) {
     for (const char* name : {"measured", "belt", "base", "states"}) {
         if (!options.has(name)) continue;
         options.push(name);
-        options.fail(
-            name, fmt::format("{} ({}) needs a guess: system = system{{ ... }} and free", name, lua::describe(L, -1)));
+        options.fail(name, "{} ({}) needs a guess: system = system{{ ... }} and free", name, lua::describe(L, -1));
     }
     take_record(L, options, asked, record, fit->question);
     if (options.has("M")) {

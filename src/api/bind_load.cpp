@@ -82,18 +82,18 @@ void arrange(const lua::Options& options, const LoadOptions& asked, files::ReadC
         columns, [](const files::ReadColumn& column) { return column.name == "t" || column.name == "time"; });
     const char* option = asked.sort ? "sort" : "duplicates";
     if (times != columns.end() && times->of_words) {
-        options.fail(option, fmt::format("{} needs times, and the column '{}' holds words, such as {}", option,
-                                         times->name, first_word(times->words)));
+        options.fail(option, "{} needs times, and the column '{}' holds words, such as {}", option, times->name,
+                     first_word(times->words));
     }
     if (times == columns.end()) {
         times = std::ranges::find_if(columns, [](const auto& column) { return !column.of_words; });
     }
-    if (times == columns.end()) options.fail(option, fmt::format("{} needs a column of numbers", option));
+    if (times == columns.end()) options.fail(option, "{} needs a column of numbers", option);
     const std::vector<double> t = times->numbers;
     const auto gap = std::ranges::find_if(t, [](double x) { return std::isnan(x); });
     if (gap != t.end()) {
-        options.fail(option, fmt::format("{} needs a time in each row, and row {} of column '{}' is empty", option,
-                                         gap - t.begin() + 1, times->name));
+        options.fail(option, "{} needs a time in each row, and row {} of column '{}' is empty", option,
+                     gap - t.begin() + 1, times->name);
     }
     std::vector<std::size_t> order(t.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -206,8 +206,7 @@ int load_file(lua_State* L, const std::string& file) {
     if (text::ending_of(file) == ".dat") {
         for (const text::Option& option : load_options) {
             if (!options.has(option.name)) continue;
-            options.fail(option.name,
-                         fmt::format("the record of 1989 (.dat) has no {}: its six columns are known", option.name));
+            options.fail(option.name, "the record of 1989 (.dat) has no {}: its six columns are known", option.name);
         }
         auto record = files::read_record1989(file);
         if (lua::interrupt_requested()) lua::raise_interrupted(L);  // the file was read in part only

@@ -66,9 +66,9 @@ plots::Numbers numbers_of_run(lua_State* L, const std::shared_ptr<const motion::
     const auto column = run->find(name);
     if (!column) {
         lua::fail(L, call,
-                  {fmt::format("the run has no column '{}'; its columns are vectors, and a curve is "
-                               "{{ run.{}, run.{} }}",
-                               name, run->names().front(), run->names().back())});
+                  "the run has no column '{}'; its columns are vectors, and a curve is "
+                  "{{ run.{}, run.{} }}",
+                  name, run->names().front(), run->names().back());
     }
     const auto values = run->rows.col(*column);
     return {run, {values.data(), static_cast<std::size_t>(values.size())}};
@@ -228,8 +228,7 @@ std::vector<std::string> asked_columns(lua_State* L, const lua::Options& options
     if (lua_istable(L, -1)) {
         const auto count = static_cast<lua_Integer>(lua_rawlen(L, -1));
         if (count == 0) {
-            options.fail(option,
-                         fmt::format("{} must name a column at least, such as {{ \"theta\", \"friction\" }}", option));
+            options.fail(option, "{} must name a column at least, such as {{ \"theta\", \"friction\" }}", option);
         }
         for (lua_Integer i = 1; i <= count; ++i) {
             lua_rawgeti(L, -1, i);
@@ -253,8 +252,7 @@ std::vector<std::string> asked_labels(lua_State* L, const lua::Options& options,
         if (lua_next(L, -2) != 0) lua_pop(L, 2), options.wrong("labels");  // { theta = "angle" }
     }
     if (curves > 0 && labels->size() > curves) {
-        options.fail("labels",
-                     fmt::format("labels has {} names for {}", labels->size(), text::counted(curves, "column")));
+        options.fail("labels", "labels has {} names for {}", labels->size(), text::counted(curves, "column"));
     }
     lua_pop(L, 1);
     return *labels;
@@ -363,9 +361,9 @@ int plot_vectors(lua_State* L) {
     constexpr std::size_t most_curves = 1000;
     if (items.curves.size() > most_curves) {
         lua::fail(L, "plot",
-                  {fmt::format("{} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
-                               "between them",
-                               items.curves.size(), most_curves)});
+                  "{} curves are too many, {} can be drawn; one curve may have pieces with 0/0 (nan) "
+                  "between them",
+                  items.curves.size(), most_curves);
     }
     lua::push_copy(L, 1, static_cast<lua_Integer>(lua_rawlen(L, 1)));
     lua_replace(L, 1);
@@ -390,7 +388,7 @@ int plot_vectors(lua_State* L) {
     }
     constexpr std::size_t most = 6;
     if (items.panels.size() > most) {
-        options.fail({fmt::format("{} pictures side by side are too many, {} fit", items.panels.size(), most)});
+        options.fail(text::error("{} pictures side by side are too many, {} fit", items.panels.size(), most));
     }
     return deliver(L, options, std::move(items.panels));
 }
@@ -459,10 +457,10 @@ int phase_plot_run(lua_State* L) {
     const RunHandle run = lua::self<RunHandle>(L, 1, "run:phase_plot()");
     const lua::Options options(L, 2, phase_plot_call);
     if (run->origin && !(run->system().joints.size() == 1 && run->system().joints.front().is_plain())) {
-        options.fail({fmt::format(
-            "the phase plane is that of a system of one body with constant Rd and Re; use run{}:plot{{ x = "
-            "\"theta\", y = \"velocity\" }}",
-            run->of_all() ? "." + run->system().joints.front().name : "")});
+        options.fail(
+            text::error("the phase plane is that of a system of one body with constant Rd and Re; use run{}:plot{{ x = "
+                        "\"theta\", y = \"velocity\" }}",
+                        run->of_all() ? "." + run->system().joints.front().name : ""));
     }
     plots::Figure figure = options.value_or_fail(plots::phase_figure(data_of(L, options, part_of(run, 0))));
     apply_options(L, options, figure);
@@ -496,18 +494,18 @@ namespace {
 plots::Interval asked_range(const lua::Options& options, std::string_view name, const std::vector<double>& ends,
                             bool logarithmic) {
     if (ends.size() != 2 || !(ends[0] < ends[1])) {
-        options.fail(name, fmt::format("{} must be two increasing numbers such as {{ 0, 10 }}", name));
+        options.fail(name, "{} must be two increasing numbers such as {{ 0, 10 }}", name);
     }
     if (logarithmic && ends[0] <= 0) {
-        options.fail(name, fmt::format("{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name,
-                                       ends[0], ends[1]));
+        options.fail(name, "{} = {{ {:.6g}, {:.6g} }} must be positive on a logarithmic axis", name, ends[0], ends[1]);
     }
     // Fractions of an axis this long or this short cannot be computed.
     if (!(ends[1] - ends[0] <= 1e300) || ends[1] - ends[0] < plots::shortest_axis ||
         ends[1] - ends[0] < 1e-13 * std::max(std::fabs(ends[0]), std::fabs(ends[1]))) {
-        options.fail(name, fmt::format("{} = {{ {}, {} }} cannot be drawn: its ends must differ by more than 1e-13 of "
-                                       "their size, by more than 1e-305 and by less than 1e300",
-                                       name, ends[0], ends[1]));
+        options.fail(name,
+                     "{} = {{ {}, {} }} cannot be drawn: its ends must differ by more than 1e-13 of "
+                     "their size, by more than 1e-305 and by less than 1e300",
+                     name, ends[0], ends[1]);
     }
     return {ends[0], ends[1]};
 }
@@ -526,8 +524,7 @@ void set_ticks(lua_State* L, const lua::Options& options, std::string_view name,
     }
     axis.division = options.number(name);
     if (axis.logarithmic) {
-        options.fail(name,
-                     fmt::format("{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name));
+        options.fail(name, "{} must be a list of numbers such as {{ 0.1, 1, 10 }} on a logarithmic axis", name);
     }
 }
 
@@ -585,9 +582,8 @@ void write_picture(lua_State* L, const lua::Options& options, const TargetOption
         if (is_text || !options.has(option)) continue;
         options.fail(
             option,
-            fmt::format(
-                "{} is for text, in the terminal or a .txt file; a file of this kind takes size = {{ 15, 10 }} (cm)",
-                option));
+            "{} is for text, in the terminal or a .txt file; a file of this kind takes size = {{ 15, 10 }} (cm)",
+            option);
     }
     if (is_text && asked.size)
         options.fail("size", "size is for .svg, .png and .pdf; give width and height for a .txt file");
@@ -620,9 +616,8 @@ void check_ticks(const lua::Options& options, std::string_view name, const plots
     const double count =
         axis.division ? scale.range().length() / *axis.division : static_cast<double>(axis.ticks.size());
     if (count > most) {
-        options.fail(
-            name, fmt::format("{} makes {:.3g} ticks from {:.6g} to {:.6g}, more than {:.0f}: give a larger distance",
-                              name, count, scale.range().low, scale.range().high, most));
+        options.fail(name, "{} makes {:.3g} ticks from {:.6g} to {:.6g}, more than {:.0f}: give a larger distance",
+                     name, count, scale.range().low, scale.range().high, most);
     }
 }
 
@@ -679,12 +674,10 @@ void apply_options(lua_State* L, const lua::Options& options, std::vector<plots:
     if (figures.size() > 1) {
         for (const char* of_one : {"ylim", "yticks", "ylog", "equal"}) {
             if (options.has(of_one)) {
-                options.fail(
-                    of_one,
-                    fmt::format(
-                        "{} is for one unit, and these columns have {}: give ylabel to draw them on one axis, or "
-                        "draw them one by one",
-                        of_one, figures.size()));
+                options.fail(of_one,
+                             "{} is for one unit, and these columns have {}: give ylabel to draw them on one axis, or "
+                             "draw them one by one",
+                             of_one, figures.size());
             }
         }
     }

@@ -222,8 +222,7 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
     if (place != between.columns().end()) {
         const double begin = std::max(from.value_or(result.t_start), result.t_start);
         if (!(begin < result.t_stop)) {
-            options.fail("from", fmt::format("from = {:.6g} must be before the end of the run, t = {:.6g}", begin,
-                                             result.t_stop));
+            options.fail("from", "from = {:.6g} must be before the end of the run, t = {:.6g}", begin, result.t_stop);
         }
         RunCall call(L, run);
         EvenSamples samples =
@@ -294,8 +293,8 @@ int spectrum_of_run(lua_State* L) {
         const auto segments = static_cast<std::size_t>(asked.segments);
         const std::size_t length = 2 * rows / (segments + 1);
         if (length < fewest_samples) {
-            options.fail("segments", fmt::format("{} {} are too few for {} segments, which need {} each", rows, kind,
-                                                 segments, fewest_samples));
+            options.fail("segments", "{} {} are too few for {} segments, which need {} each", rows, kind, segments,
+                         fewest_samples);
         }
         analysis::Spectrum found = analysis::density_of(values, dt, asked.window, length);
         data.heading = fmt::format("power density of {}: {} {}, {} of {}, {} window", name, rows, kind,
@@ -324,12 +323,12 @@ int poincare_of_run(lua_State* L) {
     }
     const double from = asked.from.value_or(result.t_start);
     if (from < result.t_start || from > result.t_stop) {
-        options.fail("from", fmt::format("from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from, result.t_start,
-                                         result.t_stop));
+        options.fail("from", "from = {:.6g} is not in the run, t {:.6g} ... {:.6g}", from, result.t_start,
+                     result.t_stop);
     }
     const double looks = std::floor((result.t_stop - from) / period * (1 + 1e-12)) + 1;
     constexpr double most = 1e7;
-    if (looks > most) options.fail({fmt::format("{:.3g} samples are more than {:.3g}", looks, most)});
+    if (looks > most) options.fail(text::error("{:.3g} samples are more than {:.3g}", looks, most));
     std::vector<std::pair<double, model::State>> samples;
     RunCall call(L, *run);
     for (std::size_t i = 0; i < static_cast<std::size_t>(looks); ++i) {
@@ -799,10 +798,10 @@ int no_such_state(lua_State* L) {
     const std::string wanted(lua_type(L, 2) == LUA_TSTRING ? lua::text_at(L, 2) : luaL_typename(L, 2));
     const std::vector<std::string> names = lua::text_keys(L, 1);
     if (names.empty()) {
-        lua::raise(L, fmt::format("run.states has no '{}': the run has no states", wanted));
+        lua::raise(L, "run.states has no '{}': the run has no states", wanted);
     }
-    lua::raise(L, fmt::format("run.states has no '{}', only {}{}", wanted, fmt::join(names, ", "),
-                              text::did_you_mean(wanted, names)));
+    lua::raise(L, "run.states has no '{}', only {}{}", wanted, fmt::join(names, ", "),
+               text::did_you_mean(wanted, names));
 }
 
 /// Pushes a table by name of the numbers from index `from` on.
@@ -950,8 +949,7 @@ motion::Grid asked_rows(const lua::Options& options, const MoreTime& asked, cons
     const std::span<const double> times = task.rows.times();
     std::vector<double> more = asked.times.value_or(std::vector<double>());
     if (!more.empty() && more.front() <= so_far.t_stop) {
-        options.fail("times", fmt::format("times[1] = {} must be after t = {}, where the run ended", more.front(),
-                                          so_far.t_stop));
+        options.fail("times", "times[1] = {} must be after t = {}, where the run ended", more.front(), so_far.t_stop);
     }
     if (const auto wrong = motion::Grid::at(more).within({so_far.t_stop, t_end}); !wrong) {
         options.fail(wrong.error());
@@ -973,8 +971,8 @@ double asked_end(const lua::Options& options, const MoreTime& asked, double stop
     if (stopped < wanted) {
         return wanted;
     }
-    options.fail("t_end", fmt::format("the run reached its end at t = {:.6g}: give a later end, for example {}",
-                                      stopped, continue_call.example));
+    options.fail("t_end", "the run reached its end at t = {:.6g}: give a later end, for example {}", stopped,
+                 continue_call.example);
 }
 
 int continue_run(lua_State* L) {
@@ -1001,9 +999,8 @@ int continue_run(lua_State* L) {
     }
     const bool spaced = origin.rows.dt() > 0;
     if (spaced && asked.times) {
-        options.fail("times",
-                     fmt::format("this run has a row every dt = {:.6g} and keeps dt; times are for runs with times",
-                                 origin.rows.dt()));
+        options.fail("times", "this run has a row every dt = {:.6g} and keeps dt; times are for runs with times",
+                     origin.rows.dt());
     }
     origin.window.end = asked_end(options, asked, so_far.t_stop, origin.window.end);
     if (!spaced) {
@@ -1039,7 +1036,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
         const auto column = column_at(L, -1, result.names(), fmt::format("columns[{}]", i));
         const files::NamedColumn& one = all[static_cast<std::size_t>(options.value_or_fail(column))];
         if (std::ranges::any_of(asked, [&one](const auto& other) { return other.name == one.name; })) {
-            options.fail("columns", fmt::format("columns names '{}' twice; load reads no such file", one.name));
+            options.fail("columns", "columns names '{}' twice; load reads no such file", one.name);
         }
         asked.push_back(one);
         lua_pop(L, 1);

@@ -431,7 +431,7 @@ model::Excitation read_motion(lua_State* L, const lua::Options& options, const c
     options.push(name);
     model::Excitation motion = to_excitation(L, -1, fmt::format("{}: {}", options.call(), name), name);
     if (motion.has_feedback() || model::has_memory(motion)) {
-        options.fail(name, fmt::format("{} must be a number, an excitation or a function of t alone", name));
+        options.fail(name, "{} must be a number, an excitation or a function of t alone", name);
     }
     lua_pop(L, 1);
     return motion;

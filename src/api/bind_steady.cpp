@@ -91,8 +91,8 @@ bool is_moving(const Steady& s) {
 /// Returns s; raises an error if it is the motion of several bodies.
 const Steady& of_one(lua_State* L, const Steady& s) {
     if (!s.of_all()) return s;
-    lua::raise(L, fmt::format("this motion has several bodies; choose one of them, such as s.{}.amplitude",
-                              s.question.system->bodies.front().name));
+    lua::raise(L, "this motion has several bodies; choose one of them, such as s.{}.amplitude",
+               s.question.system->bodies.front().name);
 }
 
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
@@ -400,7 +400,7 @@ void check_motion(const lua::Options& options, const analysis::SteadyMotion& mot
     using model::Outcome;
     if (motion.outcome == Outcome::unresolved || motion.outcome == Outcome::chattering ||
         motion.outcome == Outcome::excitation_not_finite) {
-        options.fail({fmt::format("the motion could not be followed: {}", model::sentence(motion.outcome))});
+        options.fail(text::error("the motion could not be followed: {}", model::sentence(motion.outcome)));
     }
     if (motion.contradiction) options.fail({model::sentence_with_cure(*motion.contradiction)});
 }

@@ -63,8 +63,8 @@ int nondimensional(lua_State* L) {
     options.fill(ratios);
     const double breakaway_ratio = ratios.breakaway.value_or(ratios.friction);
     if (breakaway_ratio < ratios.friction) {  // the model's error would name Rd and Re, which the user has not given
-        options.fail("breakaway_ratio", fmt::format("breakaway_ratio = {} must be at least friction_ratio = {}",
-                                                    breakaway_ratio, ratios.friction));
+        options.fail("breakaway_ratio", "breakaway_ratio = {} must be at least friction_ratio = {}", breakaway_ratio,
+                     ratios.friction);
     }
     // NOTE: no double is both I = 1/(4 pi^2), for which T0 is exactly 1, and a square, for which C/2 = sqrt(I k) can
     // hold exactly. zeta = 1 needs the square: then damping is exactly critical.
@@ -162,9 +162,9 @@ int modes_of_system(lua_State* L) {
     const auto check = [&](const model::Excitation& of, const char* name) {
         if (of.components().empty() || of.has_feedback() || of.constant_from() <= 0) return;
         options.fail(name,
-                     fmt::format("{} must be constant, or depend on the motion alone: modes are those of a rest or of "
-                                 "an even sliding",
-                                 name));
+                     "{} must be constant, or depend on the motion alone: modes are those of a rest or of "
+                     "an even sliding",
+                     name);
     };
     for (const model::Excitation& load : drive.loads) check(load, "M");
     for (const model::Excitation& belt : drive.belts) check(belt, "belt");
@@ -374,11 +374,11 @@ int field_of_varying(lua_State* L, const model::System& system, std::string_view
     if (varying != nullptr && name != "normal") {
         lua_getfield(L, 3, varying);
         const auto* law = lua::test<model::Friction>(L, -1);
-        lua::raise(L, fmt::format("this system has no constant {}: its {} is {}", name, varying,
-                                  law != nullptr            ? source::lua_text(L, *law)
-                                  : lua::is_callable(L, -1) ? "a function"
-                                  : lua_istable(L, -1)      ? "a list of laws"
-                                                            : lua::describe(L, -1)));
+        lua::raise(L, "this system has no constant {}: its {} is {}", name, varying,
+                   law != nullptr            ? source::lua_text(L, *law)
+                   : lua::is_callable(L, -1) ? "a function"
+                   : lua_istable(L, -1)      ? "a list of laws"
+                                             : lua::describe(L, -1));
     }
     lua_settop(L, 2);
     return 0;
@@ -438,12 +438,12 @@ std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& optio
     }
     for (const char* name : instead_of) {
         if (options.has(name)) {
-            options.fail(name, fmt::format("friction and {} exclude each other; give one of them", name));
+            options.fail(name, "friction and {} exclude each other; give one of them", name);
         }
     }
     const bool has_state = law->bending() != nullptr || law->as<model::laws::Jenkins>() != nullptr;
     if (!may_have_state && (has_state || law->is_one_way())) {
-        options.fail("friction", fmt::format("{} is a law that only system{{ ... }} supports", law->lua_text()));
+        options.fail("friction", "{} is a law that only system{{ ... }} supports", law->lua_text());
     }
     return *law;
 }

@@ -145,7 +145,7 @@ model::Oscillator asked_system(const lua::Options& options) {
                         : !friction.none() && friction.as<model::laws::Coulomb>() == nullptr
                             ? "include only Coulomb friction with one Rd and one Re; simulate this system"
                             : nullptr;
-    if (lacks != nullptr) options.fail("system", fmt::format("the closed forms {}", lacks));
+    if (lacks != nullptr) options.fail("system", "the closed forms {}", lacks);
     return system;
 }
 
@@ -183,7 +183,7 @@ public:
         options_.push(name);
         const bool is_number = lua_type(L_, -1) == LUA_TNUMBER || lua_isnil(L_, -1);
         const std::string element = is_number ? "" : fmt::format("[{}]", i + 1);
-        options_.fail(name, fmt::format("{}{} = {:.6g} {}", name, element, value, must));
+        options_.fail(name, "{}{} = {:.6g} {}", name, element, value, must);
     }
 
     /// Pushes f(i), an array of results, for each element i from 0: numbers if all options are numbers, otherwise
@@ -244,8 +244,8 @@ private:
 
     void check_size(std::string_view name, std::size_t size) {
         if (!sized_by_.empty() && size != size_) {
-            options_.fail(name, fmt::format("{} and {} have {} and {} numbers; they must be equally long", sized_by_,
-                                            name, size_, size));
+            options_.fail(name, "{} and {} have {} and {} numbers; they must be equally long", sized_by_, name, size_,
+                          size);
         }
         size_ = size;
         sized_by_ = name;
@@ -312,7 +312,7 @@ double asked_count(const lua::Options& options, std::optional<double> count, con
         options.fail("count", "count is needed, because this motion never comes to rest");
     }
     if (!count && all > most) {
-        options.fail("count", fmt::format("count is needed, because there are {:.6g} extremes until rest", all));
+        options.fail("count", "count is needed, because there are {:.6g} extremes until rest", all);
     }
     return std::min(count.value_or(all), all);
 }

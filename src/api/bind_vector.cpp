@@ -96,18 +96,18 @@ Operands operands(lua_State* L, const char* symbol) {
     const auto at = [&](int index) -> Operand {
         if (const auto* vector = lua::test<Vector>(L, index)) return {vector};
         if (lua_type(L, index) != LUA_TNUMBER) {
-            lua::raise(L, fmt::format("a vector {} {} is not possible; the other side must be a number or a vector",
-                                      symbol, lua::describe(L, index)));
+            lua::raise(L, "a vector {} {} is not possible; the other side must be a number or a vector", symbol,
+                       lua::describe(L, index));
         }
         return {nullptr, lua_tonumber(L, index)};
     };
     const Operand a = at(1), b = at(2);
     if (a.vector != nullptr && b.vector != nullptr && a.vector->size() != b.vector->size()) {
-        lua::raise(L, fmt::format("the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
-                                  a.vector->size(), b.vector->size()));
+        lua::raise(L, "the vectors in v {} w have {} and {} numbers; they must be equally long", symbol,
+                   a.vector->size(), b.vector->size());
     }
     if (a.vector == nullptr && b.vector == nullptr) {  // possible only through debug.getmetatable
-        lua::raise(L, fmt::format("x {} y of vectors needs a vector on one side", symbol));
+        lua::raise(L, "x {} y of vectors needs a vector on one side", symbol);
     }
     return {a, b, (a.vector != nullptr ? a : b).vector->size()};
 }
@@ -308,8 +308,8 @@ Expected<Numbers> map(lua_State* L, const Vector& v, lua::Callable /*f*/) {
     for (std::size_t i = 0; i < v.size(); ++i) {
         ask(L, v.begin()[i], i);
         if (!lua_isboolean(L, -1) && lua_type(L, -1) != LUA_TNUMBER) {
-            return Error{fmt::format("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
-                                     lua::describe(L, -1))};
+            return text::error("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
+                               lua::describe(L, -1));
         }
         result[i] = lua_isboolean(L, -1) ? static_cast<double>(lua_toboolean(L, -1)) : lua_tonumber(L, -1);
         lua_pop(L, 1);
@@ -328,7 +328,7 @@ Numbers find(lua_State* L, const Vector& v, lua::Callable /*f*/) {
 }
 
 Expected<double> quantile(const Vector& v, double p) {
-    if (!(p >= 0 && p <= 1)) return Error{fmt::format("p = {:.6g} must lie between 0 and 1", p)};
+    if (!(p >= 0 && p <= 1)) return text::error("p = {:.6g} must lie between 0 and 1", p);
     if (v.size() == 0) return Error{"the vector is empty"};
     Numbers values(v.begin(), v.end());
     if (std::ranges::any_of(values, [](double x) { return std::isnan(x); })) return std::nan("");
@@ -345,8 +345,8 @@ Expected<Numbers> interpolated(lua_State* L, const Vector& v, const Vector& x, c
     if (x.size() == 0) return Error{"there are no points"};
     const auto* const step = std::adjacent_find(x.begin(), x.end(), [](double a, double b) { return !(a < b); });
     if (step != x.end()) {
-        return Error{fmt::format("x[{}] = {} is not after x[{}] = {}; x must increase", step - x.begin() + 2, step[1],
-                                 step - x.begin() + 1, *step)};
+        return text::error("x[{}] = {} is not after x[{}] = {}; x must increase", step - x.begin() + 2, step[1],
+                           step - x.begin() + 1, *step);
     }
     Numbers result = lua::new_numbers(L, v.size());
     std::ranges::transform(v, result.begin(), [&](double at) {
@@ -370,9 +370,8 @@ int joined(lua_State* L) {
         } else if (lua_type(L, index) == LUA_TNUMBER) {
             all.push_back(lua_tonumber(L, index));
         } else {
-            lua::raise(L, fmt::format("a vector .. {} is not possible; the other side must be a number or a vector{}",
-                                      lua::describe(L, index),
-                                      lua_type(L, index) == LUA_TSTRING ? " (tostring(v) is its text)" : ""));
+            lua::raise(L, "a vector .. {} is not possible; the other side must be a number or a vector{}",
+                       lua::describe(L, index), lua_type(L, index) == LUA_TSTRING ? " (tostring(v) is its text)" : "");
         }
     }
     return lua::push_vector(L, std::move(all));
@@ -390,12 +389,10 @@ int pick(lua_State* L) {
             continue;
         }
         if (x != std::floor(x) || !(x >= 1 && x <= static_cast<double>(v.size()))) {
-            lua::raise(
-                L,
-                {.sentence = fmt::format(
-                     "v[w]: w[{}] = {:.6g} is not an index of a vector of {} numbers; a w of 0 and 1 must be as long "
-                     "as v",
-                     i + 1, x, v.size())});
+            lua::raise(L,
+                       "v[w]: w[{}] = {:.6g} is not an index of a vector of {} numbers; a w of 0 and 1 must be as long "
+                       "as v",
+                       i + 1, x, v.size());
         }
         picked.push_back(v.begin()[static_cast<std::size_t>(x) - 1]);
     }
@@ -453,7 +450,7 @@ Expected<Numbers> slice(lua_State* L, const Vector& v, std::optional<lua_Integer
     const auto n = static_cast<lua_Integer>(v.size());
     const lua_Integer first = from.value_or(1), last = to.value_or(n), step = every.value_or(1);
     if (first < 1 || last > n || step < 1) {
-        return Error{fmt::format("the vector has elements 1 to {}, and step must be at least 1", n)};
+        return text::error("the vector has elements 1 to {}, and step must be at least 1", n);
     }
     lua::make_room(L, v.size() * sizeof(double));
     Numbers result;
@@ -623,7 +620,7 @@ using Numbers = std::vector<double>;
 
 std::optional<text::Error> wrong_count(double n) {
     if (text::is_whole(n, 2, most_numbers)) return {};
-    return text::Error{fmt::format("n = {} must be a whole number from 2 to {}", n, most_numbers)};
+    return text::error("n = {} must be a whole number from 2 to {}", n, most_numbers);
 }
 
 text::Expected<Numbers> vector_linspace(lua_State* L, double from, double to, double n) {
@@ -634,9 +631,9 @@ text::Expected<Numbers> vector_linspace(lua_State* L, double from, double to, do
 text::Expected<Numbers> vector_range(lua_State* L, double from, double to, std::optional<double> given) {
     const double step = given.value_or(1), ratio = (to - from) / step;
     if (step == 0 || (to - from) * step < 0) {
-        return text::Error{fmt::format("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to)};
+        return text::error("step = {:.6g} does not lead from {:.6g} to {:.6g}", step, from, to);
     }
-    if (ratio >= most_numbers) return text::Error{fmt::format("{:.3g} numbers are more than {}", ratio, most_numbers)};
+    if (ratio >= most_numbers) return text::error("{:.3g} numbers are more than {}", ratio, most_numbers);
     constexpr double rounding = 1e-9;  // tolerance, as a part of a step: 0 to 0.3 by 0.1 includes its end
     Numbers values = lua::new_numbers(L, static_cast<std::size_t>(std::floor(ratio + rounding)) + 1);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = from + static_cast<double>(i) * step;
@@ -646,8 +643,8 @@ text::Expected<Numbers> vector_range(lua_State* L, double from, double to, std::
 text::Expected<Numbers> vector_logspace(lua_State* L, double from, double to, double n) {
     if (const auto wrong = wrong_count(n)) return *wrong;
     if (!(from > 0) || !(to > 0)) {
-        return text::Error{fmt::format(
-            "from = {} and to = {} must be positive: they are the ends themselves, not powers of ten", from, to)};
+        return text::error("from = {} and to = {} must be positive: they are the ends themselves, not powers of ten",
+                           from, to);
     }
     Numbers values = spaced(L, std::log(from), std::log(to), static_cast<std::size_t>(n));
     for (double& x : values) x = std::exp(x);
@@ -699,8 +696,8 @@ int vector_random(lua_State* L) {
     UniformNumbers asked;
     options.fill(asked);
     if (asked.from > asked.to) {
-        options.fail(options.has("from") ? "from" : "to",
-                     fmt::format("from = {:.6g} must not be greater than to = {:.6g}", asked.from, asked.to));
+        options.fail(options.has("from") ? "from" : "to", "from = {:.6g} must not be greater than to = {:.6g}",
+                     asked.from, asked.to);
     }
     std::mt19937_64 engine = engine_of(asked.seed);
     std::vector<double> values = lua::new_numbers(L, static_cast<std::size_t>(asked.n));

@@ -43,9 +43,10 @@ void check_rigid_start(const lua::Options& options, const model::System& system,
     const double speed = joint.sum(velocities);
     constexpr double rounded = 1e-14;
     if (std::fabs(speed) <= rounded * joint.size(velocities)) return;
-    options.fail("velocity0", fmt::format("velocity0: the rigid link {} keeps {} as it is, but {} changes it by {:.6g} "
-                                          "per time unit",
-                                          joint.name, system.angle_in_words(joint), given, speed));
+    options.fail("velocity0",
+                 "velocity0: the rigid link {} keeps {} as it is, but {} changes it by {:.6g} "
+                 "per time unit",
+                 joint.name, system.angle_in_words(joint), given, speed);
 }
 
 void check_one_way(const lua::Options& options, const model::System& system, const model::Joint& joint,
@@ -53,8 +54,8 @@ void check_one_way(const lua::Options& options, const model::System& system, con
     const double slip = joint.sum(velocities);
     constexpr double rounded = 1e-14;
     if (!(slip < -rounded * joint.size(velocities))) return;
-    options.fail("velocity0", fmt::format("velocity0: the freewheel{} turns forward only, but begins with {:.6g}",
-                                          system.named ? " " + joint.name : "", slip));
+    options.fail("velocity0", "velocity0: the freewheel{} turns forward only, but begins with {:.6g}",
+                 system.named ? " " + joint.name : "", slip);
 }
 
 }  // namespace
@@ -81,13 +82,13 @@ model::Drive asked_drive(lua_State* L, const lua::Options& options, const model:
          {std::pair("theta0", &drive.theta0), std::pair("velocity0", &drive.velocity0)}) {
         for_each_named(L, options, option, system, Names::bodies, [&, name = option, to = values](std::size_t i) {
             if (lua_type(L, -1) != LUA_TNUMBER || !std::isfinite(lua_tonumber(L, -1))) {
-                options.fail(name, fmt::format("{} must be a finite number, got {}", part_of_option(system, name, i),
-                                               lua::describe(L, -1)));
+                options.fail(name, "{} must be a finite number, got {}", part_of_option(system, name, i),
+                             lua::describe(L, -1));
             }
             const auto& moved = system.bodies[i].moved;
             if (moved && (moved->by_angle || to == &drive.velocity0)) {
-                options.fail(name, fmt::format("{}: this body is moved by its {}", part_of_option(system, name, i),
-                                               moved->by_angle ? "theta" : "velocity"));
+                options.fail(name, "{}: this body is moved by its {}", part_of_option(system, name, i),
+                             moved->by_angle ? "theta" : "velocity");
             }
             (*to)[i] = lua_tonumber(L, -1);
         });

@@ -35,7 +35,7 @@ std::vector<std::string> body_names(const model::System& system) {
 std::size_t joint_named(lua_State* L, std::string_view name, const model::System& system, const char* what,
                         const lua::Class& of) {
     if (const auto known = system.joint_named(name)) return *known;
-    if (!system.named) lua::raise(L, fmt::format("{} has no '{}': it has one body without a name", what, name));
+    if (!system.named) lua::raise(L, "{} has no '{}': it has one body without a name", what, name);
     std::vector<std::string> own;
     for (const model::Joint& joint : system.joints) own.push_back(joint.name);
     raise_unknown_name(L, fmt::format("{} has no '{}'; its bodies and links are {}", what, name, fmt::join(own, ", ")),
@@ -142,8 +142,8 @@ model::Joint read_body(lua_State* L, const std::string& call, model::Body& body)
 
 text::Expected<model::Oscillator> oscillator_of(const model::System& system) {
     if (system.named) {
-        return text::Error{fmt::format("needs one body, and this system has names: take one of them, such as sys.{}",
-                                       system.joints.front().name)};
+        return text::error("needs one body, and this system has names: take one of them, such as sys.{}",
+                           system.joints.front().name);
     }
     if (!system.is_plain()) {
         const model::Joint& body = system.joints.front();
@@ -158,7 +158,7 @@ text::Expected<model::Oscillator> oscillator_of(const model::System& system) {
 
 int push_alone(lua_State* L, std::string_view call, const model::System& system, std::size_t j) {
     if (!system.is_link(j) && system.bodies[j].moved) {
-        lua::fail(L, call, {fmt::format("{} is moved, and so no system by itself", system.joints[j].name)});
+        lua::fail(L, call, "{} is moved, and so no system by itself", system.joints[j].name);
     }
     const auto oscillator = lua::value_or_raise(L, call, model::oscillator_at(system, j));
     model::System one{
@@ -199,8 +199,8 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
         if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL && !is_option) {
             const double by = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : 0;
             if (!std::isfinite(by) || by == 0) {
-                options.fail("links", fmt::format("links.{}: the weight of {} must be a number other than 0, got {}",
-                                                  link, body, lua::describe(L, -1)));
+                options.fail("links", "links.{}: the weight of {} must be a number other than 0, got {}", link, body,
+                             lua::describe(L, -1));
             }
             weights.push_back({i, by});
             lua_pushnil(L);
@@ -219,11 +219,11 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
     lua::push_copy(L, given, static_cast<lua_Integer>(listed));
     std::vector<model::Weight> weights = take_weights(L, options, system, name);
     if (!weights.empty() && listed > 0) {
-        options.fail("links", fmt::format("links.{}: name two bodies, or give each body its weight, not both", name));
+        options.fail("links", "links.{}: name two bodies, or give each body its weight, not both", name);
     }
     if (weights.size() == 1) {
-        options.fail("links", fmt::format("links.{} gives {} a weight, but no other body", name,
-                                          system.bodies[weights.front().body].name));
+        options.fail("links", "links.{} gives {} a weight, but no other body", name,
+                     system.bodies[weights.front().body].name);
     }
     for (lua_Integer end = 1; end <= 2 && weights.size() < 2; ++end) {
         lua_rawgeti(L, given, end);
@@ -231,12 +231,13 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
         lua_pop(L, 1);
     }
     if (weights[0].body == weights[1].body) {
-        options.fail("links", fmt::format("links.{} must be between two different bodies", name));
+        options.fail("links", "links.{} must be between two different bodies", name);
     }
     if (listed > 2) {
-        options.fail("links", fmt::format("links.{} is between two bodies, and names {}; give each body its weight for "
-                                          "more: {{ sun = 1, ring = 1.5, carrier = -2.5 }}",
-                                          name, listed));
+        options.fail("links",
+                     "links.{} is between two bodies, and names {}; give each body its weight for "
+                     "more: {{ sun = 1, ring = 1.5, carrier = -2.5 }}",
+                     name, listed);
     }
     const std::string call = fmt::format("{}: links.{}", options.call(), name);
     text::Call own_call = link_call;
@@ -254,9 +255,7 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
     joint.rigid = lua_toboolean(L, -1) != 0;
     for (const char* idle : {"k", "C", "spring", "Rd", "Re", "friction", "normal", "walls"}) {
         if (joint.rigid && own.has(idle)) {
-            own.fail(
-                idle,
-                fmt::format("a rigid link keeps its angle, so {} can do nothing there; leave one of them out", idle));
+            own.fail(idle, "a rigid link keeps its angle, so {} can do nothing there; leave one of them out", idle);
         }
     }
     lua_pop(L, 2);
@@ -267,8 +266,8 @@ model::Joint read_link(lua_State* L, const lua::Options& options, const model::S
 void refuse_of_one(const lua::Options& options) {
     for (const char* alone : {"I", "k", "C", "Rd", "Re", "friction", "normal", "spring", "walls"}) {
         if (!options.has(alone)) continue;
-        options.fail(alone, fmt::format("{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
-                                        std::string_view(alone) == "I" ? "" : "I = 1, ", alone));
+        options.fail(alone, "{} is an option of a body: bodies = {{ load = {{ {}{} = ... }} }}", alone,
+                     std::string_view(alone) == "I" ? "" : "I = 1, ", alone);
     }
 }
 
@@ -293,7 +292,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     if (options.has("links")) {
         for (const std::string& name : tables_by_name(L, options, "links")) {
             if (std::ranges::find(names, name) != names.end()) {
-                options.fail("links", fmt::format("links: '{}' is the name of a body already; take another", name));
+                options.fail("links", "links: '{}' is the name of a body already; take another", name);
             }
             lua_getfield(L, -1, name.c_str());
             model::Joint joint = read_link(L, options, system, name);
@@ -327,16 +326,16 @@ model::Friction read_list(lua_State* L, const lua::Options& options, model::Cont
         const auto* law = lua::test<model::Friction>(L, -1);
         if (law == nullptr) {
             options.fail("friction",
-                         fmt::format("friction[{}] must be a law such as friction.jenkins{{ stiffness = 100, "
-                                     "Rd = 1 }}, got {}",
-                                     i, lua::describe(L, -1)));
+                         "friction[{}] must be a law such as friction.jenkins{{ stiffness = 100, "
+                         "Rd = 1 }}, got {}",
+                         i, lua::describe(L, -1));
         }
         friction.listed.push_back(*law);
         if (law->bending() != nullptr || (law->depends_on_speed() && main.depends_on_speed())) {
             options.fail("friction",
-                         fmt::format("friction[{}]: a list takes one law that depends on the speed, and none of "
-                                     "bristles",
-                                     i));
+                         "friction[{}]: a list takes one law that depends on the speed, and none of "
+                         "bristles",
+                         i);
         }
         if (const auto* slider = law->as<model::laws::Jenkins>()) {
             friction.sliders.push_back(*slider);
@@ -386,8 +385,7 @@ private:
         lua_pop(L_, 1);
         // Sampling instants are supported for controllers in M only.
         if (model::has_memory(value)) {
-            options_.fail(name,
-                          fmt::format("{} must be {}; a controller with a memory acts in M", name, varying_wanted));
+            options_.fail(name, "{} must be {}; a controller with a memory acts in M", name, varying_wanted);
         }
         return value;
     }
@@ -534,9 +532,8 @@ void overwrite(lua_State* L, const lua::Options& options) {
         lua_getfield(L, into, "friction");
         const auto* law = lua::test<model::Friction>(L, -1);
         if (Rd != Re && (Rd || law != nullptr)) {
-            options.fail(Rd ? "Rd" : "Re",
-                         fmt::format("the friction of this system is {}: give both Rd and Re, or friction",
-                                     law == nullptr ? "a function" : source::lua_text(L, *law)));
+            options.fail(Rd ? "Rd" : "Re", "the friction of this system is {}: give both Rd and Re, or friction",
+                         law == nullptr ? "a function" : source::lua_text(L, *law));
         }
         lua_pop(L, 1);
         if (Rd) remove("friction");
@@ -564,8 +561,7 @@ int system_with(lua_State* L) {
         if (old.named || !options.has(option)) continue;
         options.push(option);
         if (!lua_istable(L, -1)) options.wrong(option);
-        options.fail(option,
-                     fmt::format("{} are of a system with names, and this one has one body without one", option));
+        options.fail(option, "{} are of a system with names, and this one has one body without one", option);
     }
     if (old.named) {
         refuse_of_one(options);
@@ -581,8 +577,8 @@ int system_with(lua_State* L) {
             for_each_named(L, options, option, old, which, [&](std::size_t j) {
                 const std::string& name = old.joints[j].name;
                 if (!lua_istable(L, -1)) {
-                    options.fail(option, fmt::format("{}.{} must be a table such as {{ k = 3 }}, got {}", option, name,
-                                                     lua::describe(L, -1)));
+                    options.fail(option, "{}.{} must be a table such as {{ k = 3 }}, got {}", option, name,
+                                 lua::describe(L, -1));
                 }
                 lua_getfield(L, top + 2, name.c_str());
                 lua_pushvalue(L, -2);

@@ -237,9 +237,9 @@ public:
         function_ = options.has("at");
         if (system_->named && !function_) {
             options.fail("at",
-                         fmt::format("a system with named bodies needs at, such as at = function(p) return {{ M = {{ "
-                                     "{} = excitation.harmonic{{ frequency = p.f }} }} }} end",
-                                     system_->joints.front().name));
+                         "a system with named bodies needs at, such as at = function(p) return {{ M = {{ "
+                         "{} = excitation.harmonic{{ frequency = p.f }} }} }} end",
+                         system_->joints.front().name);
         }
         if (function_) place_ = push_function(L, options, "at");
         if (function_) {
@@ -308,10 +308,10 @@ private:
         lua::set_number(L_, varied_.c_str(), x);
         lua_call(L_, 1, 1);
         if (lua_istable(L_, -1)) return;
-        options_.fail(
-            "at", fmt::format("at returned {} for {} = {:.6g}; it must return a table of options of sys:steady, "
-                              "such as {{ belt = {} }}",
-                              lua::describe(L_, -1), varied_, x, system_->named ? "{ load = p.speed }" : "p.speed"));
+        options_.fail("at",
+                      "at returned {} for {} = {:.6g}; it must return a table of options of sys:steady, "
+                      "such as {{ belt = {} }}",
+                      lua::describe(L_, -1), varied_, x, system_->named ? "{ load = p.speed }" : "p.speed");
     }
 
     analysis::SteadyQuestion question_of_sine(double x) const {
@@ -398,15 +398,14 @@ private:
             // its column is called M0, so there is no conflict
             const bool harmonic = known == "amplitude" && !options_.has("at");
             if (name != known || (named && !own) || harmonic) continue;
-            options_.fail("over",
-                          fmt::format("'{}' is a column of the result: give the parameter another name", column));
+            options_.fail("over", "'{}' is a column of the result: give the parameter another name", column);
         }
     }
 
     /// M is what `at` returns, so options of a harmonic M would have no effect.
     void refuse_harmonic() const {
         for (const char* option : {"amplitude", "frequency", "omega", "period"}) {
-            if (options_.has(option)) options_.fail(option, fmt::format("{} and at exclude each other", option));
+            if (options_.has(option)) options_.fail(option, "{} and at exclude each other", option);
         }
     }
 
@@ -418,16 +417,16 @@ private:
             const std::string& name = parameter.name;
             const bool times = name == "frequency" || name == "omega" || name == "period";
             if (!times && name != "amplitude") {
-                options_.fail("at", fmt::format("over.{} needs at, a function such as {}", name, at_call.example));
+                options_.fail("at", "over.{} needs at, a function such as {}", name, at_call.example);
             }
             if (times ? given > 0 : options_.has("amplitude")) {
-                options_.fail("over", fmt::format("{} is varied, and cannot be given as well", name));
+                options_.fail("over", "{} is varied, and cannot be given as well", name);
             }
             if (!times) continue;
             ++in_time;
             for (const double x : parameter.numbers()->values()) {
                 if (x > 0) continue;
-                options_.fail(name, fmt::format("{} = {} must be positive", name, x));
+                options_.fail(name, "{} = {} must be positive", name, x);
             }
         }
         if (in_time > 1) options_.fail("over", "frequency, omega and period exclude each other; vary one of them");

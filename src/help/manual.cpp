@@ -279,8 +279,7 @@ text::Expected<std::string> manual(std::string_view page) {
         if (topic.name == page) return text_of_page(topic);
         names.push_back(topic.name);
     }
-    return text::Error{
-        fmt::format("the manual has no page '{}': the pages are {} and all", page, fmt::join(names, ", "))};
+    return text::error("the manual has no page '{}': the pages are {} and all", page, fmt::join(names, ", "));
 }
 
 }  // namespace dinal::help

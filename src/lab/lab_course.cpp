@@ -232,9 +232,9 @@ text::Expected<std::int64_t> student_number(std::string_view number, std::string
     std::int64_t value = 0;
     const auto parsed = std::from_chars(number.data(), number.data() + number.size(), value);
     if (parsed.ec != std::errc() || parsed.ptr != number.data() + number.size() || !is_student_number(value)) {
-        return text::Error{fmt::format(
-            "option {} needs a student number after it, a whole one from 1 to {}, for example {}{}", option,
-            greatest_student_number, example, number.empty() ? "" : fmt::format("; '{}' is not one", number))};
+        return text::error("option {} needs a student number after it, a whole one from 1 to {}, for example {}{}",
+                           option, greatest_student_number, example,
+                           number.empty() ? "" : fmt::format("; '{}' is not one", number));
     }
     return value;
 }

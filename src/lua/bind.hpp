@@ -93,10 +93,19 @@ struct Class {
 /// error markers and hints.
 [[noreturn]] void raise(lua_State* L, const text::Error& error);
 [[noreturn]] void raise(lua_State* L, std::string_view sentence);
+template <class First, class... Rest>
+[[noreturn]] void raise(lua_State* L, fmt::format_string<First, Rest...> sentence, First&& first, Rest&&... rest) {
+    raise(L, text::error(sentence, std::forward<First>(first), std::forward<Rest>(rest)...));
+}
 
 /// Raises the error with the call in front: "CALL: SENTENCE".
 [[noreturn]] inline void fail(lua_State* L, std::string_view call, text::Error error) {
     raise(L, text::in_call(call, std::move(error)));
+}
+template <class First, class... Rest>
+[[noreturn]] void fail(lua_State* L, std::string_view call, fmt::format_string<First, Rest...> sentence, First&& first,
+                       Rest&&... rest) {
+    fail(L, call, text::error(sentence, std::forward<First>(first), std::forward<Rest>(rest)...));
 }
 
 /// Raises "WANTED, got VALUE" plus `end`, about the value at `index` in the call.

@@ -57,6 +57,11 @@ public:
     [[noreturn]] void fail(text::Error error) const;
     /// Raises an error about that option.
     [[noreturn]] void fail(std::string_view option, std::string sentence) const;
+    template <class First, class... Rest>
+    [[noreturn]] void fail(std::string_view option, fmt::format_string<First, Rest...> sentence, First&& first,
+                           Rest&&... rest) const {
+        fail(option, fmt::format(sentence, std::forward<First>(first), std::forward<Rest>(rest)...));
+    }
     /// Returns the value, or raises its error.
     template <class T>
     T value_or_fail(text::Expected<T> expected) const {

@@ -150,10 +150,9 @@ CallState::CallState(lua_State* L)
     constexpr int deepest = 50;
     if (depth_ > deepest) {
         raise(L,
-              fmt::format(
-                  "functions of M, friction or a spring evaluate runs or other functions of this kind {} levels deep, "
-                  "which is too much",
-                  deepest));
+              "functions of M, friction or a spring evaluate runs or other functions of this kind {} levels deep, "
+              "which is too much",
+              deepest);
     }
     luaL_checkstack(L, LUA_MINSTACK, "for the call of a user function");  // once, rather than for each value
     current = this;

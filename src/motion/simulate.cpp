@@ -87,10 +87,10 @@ std::optional<text::Error> stepped_over(const char* name, double step, const mod
                                         const Window& window) {
     const auto [from, to, apart] = M.finest_detail(window.start, window.end);
     if (step <= apart * (1 + 1e-12)) return {};  // equal to the digits shown
-    return text::Error{fmt::format(
+    return text::error(
         "{} = {:.6g} is too long for the narrow bump of M between t = {:.6g} and {:.6g}: use {} <= {:.4g}, or "
         "integrator.spectral{{}}",
-        name, step, from, to, name, 0.999 * apart)};
+        name, step, from, to, name, 0.999 * apart);
 }
 
 /// An error for a sine with more than one turn between neighbouring times: its phase is undefined.
@@ -177,9 +177,9 @@ std::optional<text::Error> wrong_rows(const Grid& grid, std::size_t columns, con
     const auto count = static_cast<double>(grid.count()), memory = static_cast<double>(limits.memory);
     const double row = static_cast<double>(columns) * sizeof(double);
     if (count * row > memory) {
-        return text::Error{fmt::format("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}",
-                                       count, memory_text(count * row), memory_text(memory),
-                                       std::max(grid.dt(), (window.end - window.start) / (memory / row)))};
+        return text::error("{:.3g} rows need {} and {} are allowed: use dt >= {:.2g}, or times = {{...}}", count,
+                           memory_text(count * row), memory_text(memory),
+                           std::max(grid.dt(), (window.end - window.start) / (memory / row)));
     }
     return grid.dt() > 0 ? lost_in_time("dt", grid.dt(), window) : std::nullopt;
 }

@@ -329,7 +329,7 @@ text::Expected<std::string> install_kernel() {
         const fs::path folder = data / "kernels" / name, script = folder / "dinal_kernel.py";
         std::error_code unmade;
         fs::create_directories(folder, unmade);
-        if (unmade) return text::Error{fmt::format("cannot make the folder {}: {}", folder.string(), unmade.message())};
+        if (unmade) return text::error("cannot make the folder {}: {}", folder.string(), unmade.message());
         const Json kernel{{"argv", {"/usr/bin/python3", script.string(), "-f", "{connection_file}"}},
                           {"display_name", shown},
                           {"language", "lua"},

@@ -693,7 +693,7 @@ text::Expected<std::string> paint(std::span<const Figure> given, PictureKind kin
     if (!go_on()) return interrupted;
     for (const cairo_status_t status : {drawn, written}) {
         if (status == CAIRO_STATUS_SUCCESS) continue;
-        return text::Error{fmt::format("the picture was not drawn: {}", cairo_status_to_string(status))};
+        return text::error("the picture was not drawn: {}", cairo_status_to_string(status));
     }
     if (kind != PictureKind::svg) return std::move(output.bytes);
     std::string svg = renamed(std::move(output.bytes));

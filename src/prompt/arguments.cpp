@@ -134,9 +134,8 @@ std::optional<text::Error> carry_out(const CommandLineOption& option, Arguments&
     value.remove_prefix(std::min(value.size(), option.name.size() + 1));
     if (option.takes == Takes::value && !joined && ++i < arguments.words.size()) value = arguments.words[i];
     if (option.carry_out(arguments, value)) return std::nullopt;
-    return text::Error{fmt::format("option {} needs {} after it, for example {} {}{}", option.name, option.needs,
-                                   option.name, option.example,
-                                   value.empty() ? "" : fmt::format("; '{}' is not one", value))};
+    return text::error("option {} needs {} after it, for example {} {}{}", option.name, option.needs, option.name,
+                       option.example, value.empty() ? "" : fmt::format("; '{}' is not one", value));
 }
 
 /// Sets the safe-mode limits that the user has not given.
@@ -166,7 +165,7 @@ std::optional<text::Error> settle(Arguments& arguments) {
     }
     for (const StartStep& step : arguments.steps) {
         if (step.option == 'l') {
-            return text::Error{fmt::format("-l {} is not possible with --safe, which loads no modules", step.value)};
+            return text::error("-l {} is not possible with --safe, which loads no modules", step.value);
         }
     }
     arguments.ignore_environment = true;

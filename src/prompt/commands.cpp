@@ -91,7 +91,7 @@ text::Expected<std::string> edited(const std::string& text) {
     const int status = std::system(command.c_str());  // NOLINT: the user chose the editor
     auto changed = files::read_file(name);
     ::unlink(name.c_str());
-    if (status != 0) return text::Error{fmt::format("'{}' failed; the variable EDITOR names an editor", command)};
+    if (status != 0) return text::error("'{}' failed; the variable EDITOR names an editor", command);
     return changed;
 }
 

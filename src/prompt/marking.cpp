@@ -543,7 +543,7 @@ text::Expected<std::string> start_script(const Arguments& arguments) {
     if (!start) return start.error();
     std::error_code wrong;
     if (fs::exists(fs::symlink_status(start->file, wrong))) {
-        return text::Error{fmt::format("{} exists already: move it away to begin again", start->file)};
+        return text::error("{} exists already: move it away to begin again", start->file);
     }
     if (const auto written = files::write_file(start->file, start->text); !written) return written.error();
     return start->said + "\n";

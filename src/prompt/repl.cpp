@@ -291,10 +291,10 @@ bool Record::writes(const std::string& file) const {
 
 text::Expected<bool> Record::save(const std::string& file) {
     if (lua::safe_mode() && !file.ends_with(".lua")) {
-        return text::Error{fmt::format("{} does not end in .lua, and safe mode writes no other scripts", file)};
+        return text::error("{} does not end in .lua, and safe mode writes no other scripts", file);
     }
     if (!writes(file) && access(file.c_str(), F_OK) == 0) {
-        return text::Error{fmt::format("{} is there already, and not of this session; choose another name", file)};
+        return text::error("{} is there already, and not of this session; choose another name", file);
     }
     if (auto written = files::write_file(file, script()); !written) {
         return written.error();

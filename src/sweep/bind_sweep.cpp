@@ -107,8 +107,7 @@ double period_of_point(lua_State* L, int more, double otherwise) {
         if (take_field(L, more, name) != LUA_TNIL) {
             const double x = lua_tonumber(L, -1);
             if (!(lua_type(L, -1) == LUA_TNUMBER && x > 0 && x < 1e300)) {
-                lua::raise(
-                    L, fmt::format("at returned {} = {}, which must be a positive number", name, lua::describe(L, -1)));
+                lua::raise(L, "at returned {} = {}, which must be a positive number", name, lua::describe(L, -1));
             }
             found = period(name, x);
         }
@@ -122,10 +121,8 @@ double period_of_point(lua_State* L, int more, double otherwise) {
 void refuse_own_options(lua_State* L, int more) {
     for (const char* name : {"t_end", "dt", "times", "dense"}) {
         if (lua_getfield(L, more, name) != LUA_TNIL) {
-            lua::raise(L,
-                       fmt::format(
-                           "at returned {}, which bifurcation sets itself: choose the samples by period, skip and keep",
-                           name));
+            lua::raise(L, "at returned {}, which bifurcation sets itself: choose the samples by period, skip and keep",
+                       name);
         }
         lua_pop(L, 1);
     }
@@ -138,14 +135,13 @@ int samples_of_point(lua_State* L) {
     lua_insert(L, 1);
     lua_call(L, 1, 1);
     if (!lua_istable(L, 1)) {
-        lua::raise(
-            L, fmt::format("at must return a table such as {{ system = sys, M = M }}, got {}", lua::describe(L, 1)));
+        lua::raise(L, "at must return a table such as {{ system = sys, M = M }}, got {}", lua::describe(L, 1));
     }
     lua::push_copy(L, 1);  // index 2: the options of simulate
     take_field(L, 2, "system");
     const auto* system = lua::test<model::SystemHandle>(L, 3);
     if (system == nullptr) {
-        lua::raise(L, fmt::format("at must return a table with system = ..., got {} there", lua::describe(L, 3)));
+        lua::raise(L, "at must return a table with system = ..., got {} there", lua::describe(L, 3));
     }
     const bool several = (*system)->named;
     if (take_field(L, 2, "of") != LUA_TSTRING && several) {
@@ -174,7 +170,7 @@ int samples_of_point(lua_State* L) {
     }
     const int run = lua_gettop(L);
     if (const auto* own = lua::test<RunHandle>(L, run); own != nullptr && !is_whole((*own)->result.outcome)) {
-        lua::raise(L, fmt::format("the run ended before the last sample: {}", motion::outcome_text((*own)->result)));
+        lua::raise(L, "the run ended before the last sample: {}", motion::outcome_text((*own)->result));
     }
     lua_createtable(L, 0, static_cast<int>(2 * keep));
     for (const char* column : {"theta", "velocity"}) {
@@ -225,8 +221,7 @@ int bifurcation(lua_State* L) {
     const PointGrid grid(asked_parameters(L, options));
     for (const DataColumn& parameter : grid.parameters()) {
         if (parameter.name == "theta" || parameter.name == "velocity") {
-            options.fail(
-                "over", fmt::format("'{}' is a column of the result: give the parameter another name", parameter.name));
+            options.fail("over", "'{}' is a column of the result: give the parameter another name", parameter.name);
         }
     }
     check_file_of_sweep(options, of_workers);
@@ -269,7 +264,7 @@ SweepTask task_of(const lua::Options& options, int function, const PointGrid& gr
     if (asked.points.empty()) return task;
     const double first = asked.points.front(), last = asked.points.back();
     if (asked.points.size() != 2 || !(first >= 1 && last >= first && last <= static_cast<double>(grid.size()))) {
-        options.fail("points", fmt::format("points must be the first and the last one, of 1 to {}", grid.size()));
+        options.fail("points", "points must be the first and the last one, of 1 to {}", grid.size());
     }
     if (!asked.file.empty()) options.fail("points", "points and file exclude each other: save the data");
     task.points = {static_cast<std::size_t>(first) - 1, static_cast<std::size_t>(last)};
@@ -427,15 +422,14 @@ std::vector<Range> asked_ranges(lua_State* L, const lua::Options& options) {
     for (const DataColumn& parameter : asked_parameters(L, options)) {
         const lua::Vector* limits = parameter.numbers();
         if (limits == nullptr || limits->size() != 2 || !(limits->begin()[0] < limits->begin()[1])) {
-            options.fail("over",
-                         fmt::format("over.{0} must be the two limits of {0}, such as {{ 0.1, 2 }}", parameter.name));
+            options.fail("over", "over.{0} must be the two limits of {0}, such as {{ 0.1, 2 }}", parameter.name);
         }
         ranges.push_back({parameter.name, limits->begin()[0], limits->begin()[1]});
     }
     if (ranges.size() > 2) options.fail("over", "over has more than two parameters; minimise takes one or two");
     for (const Range& range : ranges) {
         if (range.name != "value" && range.name != "calls") continue;
-        options.fail("over", fmt::format("'{}' is a field of the result: give the parameter another name", range.name));
+        options.fail("over", "'{}' is a field of the result: give the parameter another name", range.name);
     }
     return ranges;
 }
@@ -461,9 +455,8 @@ int minimise(lua_State* L) {
         lua_call(L, 1, 1);
         const double value = lua_tonumber(L, -1);
         if (lua_type(L, -1) != LUA_TNUMBER || std::isnan(value)) {
-            options.fail("run",
-                         fmt::format("run returned {} at {}; it must return a number, math.huge if there is none",
-                                     lua::describe(L, -1), place));
+            options.fail("run", "run returned {} at {}; it must return a number, math.huge if there is none",
+                         lua::describe(L, -1), place);
         }
         lua_pop(L, 1);
         return value;

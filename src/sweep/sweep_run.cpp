@@ -436,8 +436,7 @@ std::size_t most_workers(lua_State* L) {
     std::size_t most = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), most);
     if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size() || most == 0) {
-        lua::raise(L, fmt::format("DINAL_WORKERS, the most threads of a sweep, must be a whole number from 1, not '{}'",
-                                  text));
+        lua::raise(L, "DINAL_WORKERS, the most threads of a sweep, must be a whole number from 1, not '{}'", text);
     }
     return most;
 }
@@ -647,7 +646,7 @@ const lua::Class parted_class = {"sweep in parts", {"", "", ""}, parted_members}
 
 void check_file_of_sweep(const lua::Options& options, const SweepOptions& asked) {
     if (!options.has("file") || text::ending_of(asked.file) == ".csv") return;
-    options.fail("file", fmt::format("the name '{}' must end in .csv", asked.file));
+    options.fail("file", "the name '{}' must end in .csv", asked.file);
 }
 
 Data swept(lua_State* L, const SweepTask& task) {
@@ -799,8 +798,7 @@ std::optional<text::Error> SweepJournal::append(std::string_view text) {
         if (count > 0) rest.remove_prefix(static_cast<std::size_t>(count));
     }
     if (good) size_ += text.size();
-    return good ? std::nullopt
-                : std::optional(text::Error{fmt::format("cannot write '{}': {}", path_, std::strerror(errno))});
+    return good ? std::nullopt : std::optional(text::error("cannot write '{}': {}", path_, std::strerror(errno)));
 }
 
 std::optional<text::Error> SweepJournal::write(bool incomplete) {

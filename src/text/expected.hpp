@@ -1,6 +1,8 @@
 // A value, or an error for the user.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <string>
 #include <string_view>
 #include <utility>
@@ -20,6 +22,12 @@ struct Error {
 
     std::string message() const { return sentence + cure; }
 };
+
+/// Returns an error whose sentence is formatted.
+template <class... Values>
+Error error(fmt::format_string<Values...> sentence, Values&&... values) {
+    return {fmt::format(sentence, std::forward<Values>(values)...)};
+}
 
 /// Returns the error with the call in front: "system: I = -1 must be positive".
 inline Error in_call(std::string_view call, Error error) {

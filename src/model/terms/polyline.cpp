@@ -171,8 +171,8 @@ std::optional<text::Error> Polyline::complaint() const {
         return text::Error{"there are no points; give at least one time and one value"};
     }
     if (samples->t.size() != samples->M.size()) {
-        return text::Error{fmt::format("t has {} values and M has {}; they must be equally long", samples->t.size(),
-                                       samples->M.size())};
+        return text::error("t has {} values and M has {}; they must be equally long", samples->t.size(),
+                           samples->M.size());
     }
     if (auto wrong = text::complaint(samples_options, *samples)) return wrong;
     if (auto wrong = not_increasing("t", samples->t)) return wrong;

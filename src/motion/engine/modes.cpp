@@ -262,9 +262,8 @@ private:
             }
             if (beside[0] < beside[1] && beside[0] <= limit && beside[1] >= -limit) continue;
             const std::string& name = given_.system.joints[j].name;
-            return text::Error{
-                fmt::format("there is no rest: the friction{} would have to hold {:.6g}, but holds {:.6g}",
-                            name.empty() ? "" : " of " + name, std::fabs(held[j]), limit)};
+            return text::error("there is no rest: the friction{} would have to hold {:.6g}, but holds {:.6g}",
+                               name.empty() ? "" : " of " + name, std::fabs(held[j]), limit);
         }
         return {};
     }

@@ -42,9 +42,9 @@ public:
         : Course(seen), place_(place), states_(states), t_start_(run.t_start), history_(run.left->history) {}
     text::Expected<model::State> at(double t) const override {
         if (t > history_->whole_until()) {
-            return text::Error{fmt::format(
+            return text::error(
                 "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
-                history_->whole_until())};
+                history_->whole_until());
         }
         model::State state = place_.state(history_->at(t));
         // Near a wall the stored motion has a rounding error.

@@ -269,9 +269,8 @@ double Arcs::whole_until() const {
 text::Expected<model::State> Arcs::at(double t) const {
     if (arcs_.empty()) return text::Error{"the run has no motion to evaluate: it ended where it started"};
     if (t > end() && !complete_) {
-        return text::Error{fmt::format(
-            "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there",
-            end())};
+        return text::error(
+            "the motion was kept only up to t = {:.6g}, for lack of memory: ask for rows, or start a run there", end());
     }
     // The last arc that begins at or before t.
     const auto after = std::upper_bound(arcs_.begin() + 1, arcs_.end(), t,

@@ -49,8 +49,7 @@ text::Expected<model::State> Replay::at(double t) const {
     const std::size_t last = next != nullptr ? next->step : std::min(step + 1, engine.steps().count);
     engine.run(checkpoints.before(step), last);
     if (run.size() > 0 && rows.next_row() == 0) {
-        return text::Error{
-            fmt::format("M failed between the rows near t = {:.6g}: it no longer returns a number there", t)};
+        return text::error("M failed between the rows near t = {:.6g}: it no longer returns a number there", t);
     }
     if (next != nullptr) {
         const Rk4Checkpoint here = engine.here(last);
