@@ -189,7 +189,7 @@ private:
             run_.initial.theta);
         const auto redundant = motion::engine::redundant_rigid(whole_.system);
         const auto own = static_cast<std::size_t>(&joint_ - whole_.system.joints.data());
-        if (std::ranges::find(redundant, own) != redundant.end()) {
+        if (text::contains(redundant, own)) {
             say("It closes a loop of rigid links: the motion does not determine how they share their torques, so those "
                 "with the least sum of squares are given.");
         }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "motion/stillness.hpp"
+#include "text/words.hpp"
 
 namespace dinal::analysis {
 
@@ -163,7 +164,7 @@ Swings swings(const std::vector<Stretch>& stretches, double period) {
         result.amplitudes[i] = std::max(result.amplitudes[i], std::fabs(s->end.theta - s->begin.theta) / 2);
         ++count[i];
     }
-    if (std::ranges::any_of(count, [](int n) { return n == 0; })) return result;
+    if (text::contains(count, 0)) return result;
     const auto& [a, b, c] = result.amplitudes;
     const double least = 1e-9 * std::max({a, b, c});
     result.trend = b - a > least && c - b > least   ? Trend::growing

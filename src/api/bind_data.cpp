@@ -878,7 +878,7 @@ std::vector<std::string> different_parameters(const Data& data) {
 std::vector<std::string> drawable_results(const Data& data, const std::string& x) {
     std::vector<std::string> names;
     for (const DataColumn& column : data.columns) {
-        const bool given = std::ranges::find(data.parameters, column.name) != data.parameters.end();
+        const bool given = text::contains(data.parameters, column.name);
         if (!given && column.name != x && column.numbers() != nullptr) names.push_back(column.name);
     }
     return names;

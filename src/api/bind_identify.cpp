@@ -829,8 +829,7 @@ private:
             const std::string before = before_names(system_, j);
             const bool is_fitted =
                 std::ranges::any_of(free_, [&](const Fitted& one) { return one.name.starts_with(before); });
-            const bool is_measured =
-                std::ranges::any_of(columns_, [j](const MeasuredColumn& column) { return column.joint == j; });
+            const bool is_measured = text::contains(columns_, j, &MeasuredColumn::joint);
             if (is_fitted || is_measured) add_missing_torques(j, p, noise, found);
         }
         return found;
@@ -1127,7 +1126,7 @@ int fit_value(lua_State* L) {
         lua_pushnumber(L, value);
         return 1;
     }
-    if (!fit->from_guess && std::ranges::find(analysis::unknown_names, name) != analysis::unknown_names.end()) {
+    if (!fit->from_guess && text::contains(analysis::unknown_names, name)) {
         lua::raise(L, {.sentence = fmt::format(
                            "a free decay determines only ratios, so there is no {}: give I or k to identify", name),
                        .culprit = std::string(name)});

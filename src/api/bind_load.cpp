@@ -128,8 +128,7 @@ int push_loaded_run(lua_State* L, files::Table content, model::Units units) {
 }
 
 bool has_column(const files::ReadColumns& content, std::string_view name) {
-    return std::ranges::any_of(content.columns,
-                               [name](const files::ReadColumn& column) { return column.name == name; });
+    return text::contains(content.columns, name, &files::ReadColumn::name);
 }
 
 /// In a table of t and theta, the number of the first row that is earlier than the one before.
@@ -234,7 +233,7 @@ std::string ending_of_file(lua_State* L, std::string_view name) {
 }
 
 bool is_one_of(std::string_view ending, std::initializer_list<std::string_view> known) {
-    return std::ranges::find(known, ending) != known.end();
+    return text::contains(known, ending);
 }
 
 int load(lua_State* L) {

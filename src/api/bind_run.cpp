@@ -254,7 +254,7 @@ EvenSamples samples_of(lua_State* L, const lua::Options& options, const LuaRun& 
 std::optional<std::size_t> joint_of_column(const LuaRun& run, std::string_view column) {
     if (!run.of_all()) return {};
     const auto& states = run.origin->drive.states;
-    if (std::ranges::any_of(states, [&](const model::OwnState& s) { return s.name == column; })) return 0;
+    if (text::contains(states, column, &model::OwnState::name)) return 0;
     return run.system().joint_named(column.substr(0, column.find('.')));
 }
 
@@ -502,7 +502,7 @@ void raise_unknown_name(lua_State* L, std::string sentence, std::string_view wro
                         const std::vector<std::string>& known, const lua::Class& of) {
     std::vector<std::string_view> names(known.begin(), known.end());
     for (const lua::Member& member : of.members) {
-        const bool is_known = std::ranges::find(known, member.name) != known.end();
+        const bool is_known = text::contains(known, member.name);
         if (member.kind != lua::Kind::metamethod && !is_known) names.push_back(member.name);
     }
     std::string cure = text::did_you_mean(wrong, names);
@@ -1035,7 +1035,7 @@ std::vector<files::NamedColumn> asked_columns(lua_State* L, const lua::Options& 
         lua_rawgeti(L, -1, i);
         const auto column = column_at(L, -1, result.names(), fmt::format("columns[{}]", i));
         const files::NamedColumn& one = all[static_cast<std::size_t>(options.value_or_fail(column))];
-        if (std::ranges::any_of(asked, [&one](const auto& other) { return other.name == one.name; })) {
+        if (text::contains(asked, one.name, &files::NamedColumn::name)) {
             options.fail("columns", "columns names '{}' twice; load reads no such file", one.name);
         }
         asked.push_back(one);

@@ -21,6 +21,7 @@
 #include "model/laws/bristle.hpp"
 #include "motion/engine/modes.hpp"
 #include "source/describe.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -359,7 +360,7 @@ int field_of_names(lua_State* L, const model::System& system, std::string_view n
 /// Pushes a field of a system with varying friction: what the user wrote.
 int field_of_varying(lua_State* L, const model::System& system, std::string_view name) {
     constexpr std::array<std::string_view, 6> own{"Rd", "Re", "normal", "friction", "walls", "dead_zone"};
-    if (std::ranges::find(own, name) == own.end()) return 0;
+    if (!text::contains(own, name)) return 0;
     push_joint(L, system, 0);
     const char* varying = varying_option(L);
     if (system.joints.front().stops && name == "dead_zone") lua::raise(L, "with elastic walls a mass has no dead zone");

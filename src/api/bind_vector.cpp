@@ -21,6 +21,7 @@
 #include "lua/options.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api::vectors {
 namespace {
@@ -224,7 +225,7 @@ int holds(lua_State* L) {
     lua::make_room(L, of.size / 8 + 1);
     std::vector<bool> mask(of.size);
     for (std::size_t i = 0; i < of.size; ++i) mask[i] = f(of.a[i], of.b[i]);
-    const bool all = std::ranges::find(mask, false) == mask.end();
+    const bool all = !text::contains(mask, false);
     const auto [function, line] = running_line(L);
     const bool again = function == last_comparison.function && line == last_comparison.line;
     last_comparison = {function, line, again ? last_comparison.count + 1 : 1, all, std::move(mask)};

@@ -17,6 +17,7 @@
 #include "model/functions.hpp"
 #include "model/laws/coulomb.hpp"
 #include "source/describe.hpp"
+#include "text/words.hpp"
 
 namespace dinal::api {
 
@@ -84,7 +85,7 @@ std::vector<std::string> tables_by_name(lua_State* L, const lua::Options& option
     options.push(option);
     std::vector<std::string> names = names_in_table(L, options, option);
     for (const std::string& name : names) {
-        if (std::ranges::find(names_in_runs, name) != std::end(names_in_runs)) {
+        if (text::contains(names_in_runs, name)) {
             options.fail(
                 {.sentence = fmt::format("{}: '{}' is a name that a run has already; take another", option, name),
                  .option = option,
@@ -194,8 +195,7 @@ std::vector<model::Weight> take_weights(lua_State* L, const lua::Options& option
     std::vector<model::Weight> weights;
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         const std::string& body = system.bodies[i].name;
-        const bool is_option =
-            std::ranges::any_of(link_options, [&](const text::Option& option) { return body == option.name; });
+        const bool is_option = text::contains(link_options, body, &text::Option::name);
         if (lua_getfield(L, -1, body.c_str()) != LUA_TNIL && !is_option) {
             const double by = lua_type(L, -1) == LUA_TNUMBER ? lua_tonumber(L, -1) : 0;
             if (!std::isfinite(by) || by == 0) {
@@ -291,7 +291,7 @@ int push_bodies(lua_State* L, const lua::Options& options) {
     lua_pop(L, 1);
     if (options.has("links")) {
         for (const std::string& name : tables_by_name(L, options, "links")) {
-            if (std::ranges::find(names, name) != names.end()) {
+            if (text::contains(names, name)) {
                 options.fail("links", "links: '{}' is the name of a body already; take another", name);
             }
             lua_getfield(L, -1, name.c_str());

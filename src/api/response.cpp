@@ -353,7 +353,7 @@ private:
 
     analysis::Repetition repetition_at(double x, const lua::Options& own, const analysis::SteadyQuestion& question,
                                        const std::optional<double>& period) const {
-        const bool is_value = std::ranges::find(values_, x) != values_.end();
+        const bool is_value = text::contains(values_, x);
         // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
         if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });

@@ -195,7 +195,7 @@ std::string decimal_comma(std::string_view statement) {
 std::string file_without_quotes(std::string_view name, std::string_view statement) {
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
-        const bool ending = std::ranges::find(file_endings, all[i].text) != file_endings.end();
+        const bool ending = text::contains(file_endings, all[i].text);
         if (ending && all[i - 1].is(".") && all[i - 2].kind == lua::TokenKind::name &&
             (all[i].text == name || all[i - 2].text == name)) {
             return "; write the name of a file in quotes: \"" + std::string(all[i - 2].text) + "." +

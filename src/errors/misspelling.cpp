@@ -127,7 +127,7 @@ bool is_variable(lua_State* L, lua_Debug* frame, std::string_view name) {
     constexpr int most_levels = 50;
     const auto knows = [&](lua_Debug* of) {
         const std::vector<std::string> names = variables(L, of);
-        return std::ranges::find(names, name) != names.end();
+        return text::contains(names, name);
     };
     if (knows(frame)) return true;
     lua_Debug caller{};
@@ -312,7 +312,7 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
             lua_pop(L, 1);
             whole_name.append(".").append(all[i + 2].text);
             hint = text::did_you_mean(all[i + 2].text, names);
-            if (hint.empty() || std::ranges::find(names, all[i + 2].text) != names.end()) continue;
+            if (hint.empty() || text::contains(names, all[i + 2].text)) continue;
         } else if (is_nil_global(L, frame, all, i)) {
             hint = similar_global(L, all[i].text);
         } else {

@@ -27,7 +27,7 @@ std::vector<std::string_view> words_of(std::string_view text) {
 
 bool has_word(std::string_view words, std::string_view wanted) {
     const std::vector<std::string_view> all = words_of(words);
-    return std::ranges::find(all, wanted) != all.end();
+    return text::contains(all, wanted);
 }
 
 /// An entry of the manual.

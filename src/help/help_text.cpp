@@ -112,7 +112,7 @@ class Names {
 public:
     void add(const std::string& name) {
         constexpr std::size_t most = 5;
-        if (list.size() < most && std::ranges::find(list, name) == list.end()) {
+        if (list.size() < most && !text::contains(list, name)) {
             list.push_back(name);
         }
     }

@@ -146,8 +146,7 @@ std::string with_default(const text::Option& option) {
 }
 
 bool is_class_of_objects(const Section& section) {
-    return std::ranges::none_of(section.description->members,
-                                [](const lua::Member& member) { return member.kind == lua::Kind::function; });
+    return !text::contains(section.description->members, lua::Kind::function, &lua::Member::kind);
 }
 
 }  // namespace

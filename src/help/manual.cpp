@@ -50,9 +50,7 @@ const std::vector<Page>& manual_pages() {
 }
 
 const Page& page_of(const Section& section) {
-    const auto has = [&section](const Page& topic) {
-        return std::ranges::find(topic.sections, section.title) != topic.sections.end();
-    };
+    const auto has = [&section](const Page& topic) { return text::contains(topic.sections, section.title); };
     const auto found = std::find_if(manual_pages().begin(), manual_pages().end(), has);
     return found == manual_pages().end() ? manual_pages().back() : *found;
 }

@@ -17,6 +17,7 @@
 #include "lua/vector.hpp"
 #include "lua/worker_state.hpp"
 #include "terminal/progress.hpp"
+#include "text/words.hpp"
 
 namespace dinal::lab {
 
@@ -479,7 +480,7 @@ int lab_experiment(lua_State* L) {
 
 /// Adds a wrong value; returns false if it is already known and does not count again.
 bool add_wrong(LabAnswer& answer, double value) {
-    if (std::ranges::find(answer.wrong, value) != answer.wrong.end()) return false;
+    if (text::contains(answer.wrong, value)) return false;
     answer.wrong.push_back(value);
     return true;
 }
@@ -521,8 +522,7 @@ double value_at_2(lua_State* L) {
 }
 
 bool is_judged(const LabAnswer& answer, double value) {
-    return answer.right || answer.wrong.size() < most_wrong ||
-           std::ranges::find(answer.wrong, value) != answer.wrong.end();
+    return answer.right || answer.wrong.size() < most_wrong || text::contains(answer.wrong, value);
 }
 
 /// The course's sentence about a question in the student's language: a format filled with the values on the top of the

@@ -179,7 +179,7 @@ std::vector<std::string> free_names(std::string_view source) {
         if (token.kind == TokenKind::comment) {
             continue;
         }
-        const bool fresh = std::ranges::find(names, token.text) == names.end();
+        const bool fresh = !text::contains(names, token.text);
         if (token.kind == TokenKind::name && !field && fresh) {
             names.emplace_back(token.text);
         }

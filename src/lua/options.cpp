@@ -8,6 +8,7 @@
 
 #include "lua/lua_text.hpp"
 #include "lua/vector.hpp"
+#include "text/words.hpp"
 
 namespace dinal::lua {
 
@@ -39,7 +40,7 @@ std::string cures(const Names& unknown, const Names& known) {
 std::string options_of_neighbour(Names& unknown, const text::Call* neighbour) {
     if (neighbour == nullptr) return "";
     const auto has = [&](std::string_view name) {
-        return std::ranges::any_of(neighbour->options, [&](const text::Option& option) { return name == option.name; });
+        return text::contains(neighbour->options, name, &text::Option::name);
     };
     const auto theirs = std::stable_partition(unknown.begin(), unknown.end(), [&](auto name) { return !has(name); });
     const Names moved(theirs, unknown.end());

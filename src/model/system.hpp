@@ -26,6 +26,7 @@
 #include "model/spring.hpp"
 #include "model/units.hpp"
 #include "model/walls.hpp"
+#include "text/words.hpp"
 
 namespace dinal::model {
 
@@ -100,9 +101,7 @@ struct Joint {
         for (const auto& [body, by] : of) total += std::fabs(by * of_bodies[body]);
         return total;
     }
-    bool is_on(std::size_t body) const {
-        return std::ranges::any_of(of, [body](const Weight& weight) { return weight.body == body; });
-    }
+    bool is_on(std::size_t body) const { return text::contains(of, body, &Weight::body); }
     const Walls* any_walls() const { return walls ? &*walls : stops ? &*stops : nullptr; }
     /// Returns whether an Oscillator can represent this joint.
     bool is_plain() const { return friction.is_plain() && !stops; }

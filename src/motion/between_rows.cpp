@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "text/words.hpp"
+
 namespace dinal::motion {
 
 namespace {
@@ -110,7 +112,7 @@ Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
     const std::vector<double> small = invisible(values, width);
     std::vector<char> straight(times.size(), 0);  // whether each interval is drawn straight
     straight.back() = 1;
-    while (times.size() < enough && std::ranges::find(straight, 0) != straight.end()) {
+    while (times.size() < enough && text::contains(straight, 0)) {
         std::vector<double> more_times, more_values;
         std::vector<char> more_straight;
         for (std::size_t i = 0; i < times.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "plots/shades.hpp"
+#include "text/words.hpp"
 
 namespace dinal::plots {
 
@@ -138,8 +139,7 @@ Scale::Scale(Interval range, bool logarithmic)
       factor_(1 / ((logarithmic ? std::log10(range.high) : range.high) - low_)) {}
 
 View view_of(const Figure& figure) {
-    const bool has_points =
-        std::ranges::any_of(figure.curves, [](const Curve& curve) { return curve.style == Style::points; });
+    const bool has_points = text::contains(figure.curves, Style::points, &Curve::style);
     Extents extents = extents_of(figure);
     if (figure.circles) {
         include_origin(extents.x);
@@ -172,7 +172,7 @@ Box equal_box(View& view, Box most) {
 std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
     std::vector<MarkKind> kinds;
     for (const Mark& mark : marks) {
-        if (std::ranges::find(kinds, mark.kind) == kinds.end()) {
+        if (!text::contains(kinds, mark.kind)) {
             kinds.push_back(mark.kind);
         }
     }

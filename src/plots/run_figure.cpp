@@ -8,6 +8,7 @@
 #include "analysis/recurrence.hpp"
 #include "files/csv.hpp"
 #include "motion/columns.hpp"
+#include "text/words.hpp"
 
 namespace dinal::plots {
 
@@ -169,7 +170,7 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
                                          const std::vector<std::string>& names) {
     Figure figure;
     figure.x.label = axis_label(run, across);
-    const bool with_theta = std::ranges::find(names, "theta") != names.end();
+    const bool with_theta = text::contains(names, "theta");
     for (const std::string& name : names) {
         const auto values = column(run, name);
         if (!values) {
@@ -315,7 +316,7 @@ using Pair = std::pair<std::size_t, std::size_t>;
 int merit(std::size_t body, std::span<const Pair> links) {
     const auto named =
         std::ranges::count_if(links, [body](const Pair& link) { return link.first == body || link.second == body; });
-    const bool driven = std::ranges::any_of(links, [body](const Pair& link) { return link.second == body; });
+    const bool driven = text::contains(links, body, &Pair::second);
     return named > 1 ? 0 : driven ? 1 : 2;
 }
 

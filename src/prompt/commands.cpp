@@ -355,7 +355,7 @@ std::string answer_to(lua_State* L, std::string_view line) {
         return help::tour_page(1);
     }
     const std::vector<std::string> own = lua::users_globals(L);
-    if (!help::lua_word(words).empty() && std::ranges::find(own, words) == own.end()) {
+    if (!help::lua_word(words).empty() && !text::contains(own, words)) {
         return help::help_about(words, screen);
     }
     const int top = lua_gettop(L);
@@ -363,7 +363,7 @@ std::string answer_to(lua_State* L, std::string_view line) {
     const Meaning found = meaning(L, all);
     std::string answer = entry(found, screen);
     if (const std::vector<std::string> names = help::help_names();
-        answer.empty() && found.kind == Meaning::Kind::value && std::ranges::find(names, words) == names.end()) {
+        answer.empty() && found.kind == Meaning::Kind::value && !text::contains(names, words)) {
         lua_pushcfunction(L, show_value);
         lua_insert(L, -2);
         const bool shown = call(L, 1, 1) == LUA_OK;

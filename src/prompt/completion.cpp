@@ -15,6 +15,7 @@
 #include "prompt/commands.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 namespace {
@@ -171,7 +172,7 @@ std::vector<std::string> option_names(lua_State* L, const OpenCall& call) {
         names.emplace_back("{ ");
     }
     for (const text::Option& option : table.options) {
-        if (std::ranges::find(call.given, option.name) == call.given.end()) {
+        if (!text::contains(call.given, option.name)) {
             names.push_back(std::string(option.name) + " = ");
         }
     }
@@ -348,9 +349,7 @@ std::string signature_hint(lua_State* L, std::string_view before) {
             continue;
         }
         const std::vector<lua::Token> words = lua::tokens(part);
-        const auto is_given = [&](const lua::Token& word) {
-            return std::ranges::find(typed.call()->given, word.text) != typed.call()->given.end();
-        };
+        const auto is_given = [&](const lua::Token& word) { return text::contains(typed.call()->given, word.text); };
         if (!words.empty() && !std::ranges::any_of(words, is_given)) {
             hint.append(hint.empty() ? "" : ", ").append(part, std::min(part.find_first_not_of(' '), part.size()));
         }

@@ -21,6 +21,7 @@
 #include "source/function_source.hpp"
 #include "terminal/display.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::prompt {
 
@@ -311,7 +312,7 @@ private:
             return item;
         }
         const void* address = lua_topointer(L_, index);
-        if (std::ranges::find(open_, address) != open_.end()) {
+        if (text::contains(open_, address)) {
             return {"<cycle>"};
         }
         return open_.size() >= deepest ? Piece{"{...}"} : table_line(index, room);

@@ -286,7 +286,7 @@ void Record::add_statement(const std::string& statement) {
 }
 
 bool Record::writes(const std::string& file) const {
-    return std::ranges::find(written_, file) != written_.end();
+    return text::contains(written_, file);
 }
 
 text::Expected<bool> Record::save(const std::string& file) {

@@ -9,6 +9,7 @@
 #include "lua/prototype.hpp"
 #include "lua/standard_globals.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::source {
 namespace {
@@ -91,7 +92,7 @@ void find_in(lua_State* L, std::string_view text, const Shape& wanted, Found& fo
         const Likeness like = source.empty() ? Likeness::none : likeness(L, source, wanted);
         if (like != Likeness::none) {
             auto& list = like == Likeness::code ? found.by_code : found.by_shape;
-            if (std::ranges::find(list, source) == list.end()) {
+            if (!text::contains(list, source)) {
                 list.push_back(source);
             }
         }

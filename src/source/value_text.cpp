@@ -13,6 +13,7 @@
 #include "source/describe.hpp"
 #include "source/function_source.hpp"
 #include "text/characters.hpp"
+#include "text/words.hpp"
 
 namespace dinal::source {
 
@@ -56,7 +57,7 @@ std::string ValueText::expression(int index) {
 
 std::string ValueText::table(int index) {
     const void* identity = lua_topointer(L_, index);
-    if (std::ranges::find(open_, identity) != open_.end() || open_.size() > deepest) {
+    if (text::contains(open_, identity) || open_.size() > deepest) {
         return nothing("a table that contains itself");
     }
     const int top = lua_gettop(L_);
@@ -126,7 +127,7 @@ std::optional<std::string> ValueText::aside(const std::vector<double>& numbers) 
 
 std::string ValueText::function(int index) {
     const void* identity = lua_topointer(L_, index);
-    if (std::ranges::find(open_, identity) != open_.end()) {
+    if (text::contains(open_, identity)) {
         return nothing("a function that refers to itself in a roundabout way");
     }
     if (open_.size() > deepest) {
@@ -183,7 +184,7 @@ void ValueText::note_globals(int function_index, std::string_view source) {
 }
 
 void ValueText::note_global(int environment, const std::string& name) {
-    if (std::ranges::find(names_, name) != names_.end()) {
+    if (text::contains(names_, name)) {
         return;
     }
     lua::push_standard_globals(L_);
@@ -196,7 +197,7 @@ void ValueText::note_global(int environment, const std::string& name) {
     lua_pop(L_, 1);
     if (users) {
         names_.push_back(name);
-        const bool itself = std::ranges::find(open_, lua_topointer(L_, -1)) != open_.end();
+        const bool itself = text::contains(open_, lua_topointer(L_, -1));
         // function M(t) return M_old(t) end needs M_old first; a function that calls itself already exists under its
         // name, if it has one.
         if (itself && aside_) nothing("the global function " + name + ", which calls itself: make it local");

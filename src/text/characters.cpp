@@ -234,7 +234,7 @@ std::size_t colour_at(std::string_view text) {
         const std::size_t size = std::min(numbers.find(';'), numbers.size());
         const std::string_view one = numbers.substr(0, size);
         const bool colour = one.size() == 2 && (one.front() == '3' || one.front() == '9');
-        if (!colour && std::ranges::find(styles, one) == styles.end()) {
+        if (!colour && !contains(styles, one)) {
             return 0;
         }
         if (size == numbers.size()) {

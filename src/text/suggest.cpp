@@ -89,7 +89,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 69> synonyms
 }};
 
 bool is_synonym(std::string_view small_word, std::string_view name) {
-    return std::ranges::find(synonyms, std::pair(small_word, name)) != synonyms.end();
+    return contains(synonyms, std::pair(small_word, name));
 }
 
 /// Insertions, deletions, substitutions and swaps of neighbours that turn a into b (optimal string alignment).
@@ -168,7 +168,7 @@ std::vector<std::string> suggestions(std::string_view word, const KnownNames& kn
             fewest = count;
             best.clear();
         }
-        if (count == fewest && count < far && std::ranges::find(best, name) == best.end()) {
+        if (count == fewest && count < far && !contains(best, name)) {
             best.emplace_back(name);
         }
     }

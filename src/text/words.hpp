@@ -1,10 +1,12 @@
-// Letters and words, shared by all readers of text; numbers and counts in sentences, with a sensible number of digits.
+// Letters, words and lists, shared by all readers of text; numbers and counts in sentences, with a sensible number of
+// digits.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -45,6 +47,12 @@ inline std::vector<std::string_view> split(std::string_view text, char separator
         parts.push_back(text.substr(begin, text.find(separator, begin) - begin));
     }
     return parts;
+}
+
+/// Returns whether an element of the list, or this part of one, has the value.
+template <class List, class Value, class Part = std::identity>
+[[nodiscard]] constexpr bool contains(const List& list, const Value& value, Part part = {}) {
+    return std::ranges::find(list, value, part) != std::ranges::end(list);
 }
 
 /// Returns the text without these characters at its ends.
