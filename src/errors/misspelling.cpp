@@ -183,14 +183,12 @@ std::string qualified(lua_State* L, std::string_view name, Use use) {
     return text::did_you_mean_one_of(found);
 }
 
-/// Returns whether the value on the top is an object of dinal with this field, such as a system or a run.
-bool has_field(lua_State* L, std::string_view name) {
-    if (lua_isuserdata(L, -1) == 0) return false;
+/// Returns whether the value on the top is an object of dinal with this field or method, such as a system or a run.
+bool has_member(lua_State* L, std::string_view name, lua::Kind kind) {
     const lua::Documented found = lua::documented(L, -1);
-    return found.owner != nullptr && found.member == nullptr &&
-           std::ranges::any_of(found.owner->members, [name](const lua::Member& member) {
-               return member.kind == lua::Kind::field && member.name == name;
-           });
+    return is_object_of_ours(L, -1) && found.member == nullptr &&
+           std::ranges::any_of(found.owner->members,
+                               [&](const lua::Member& member) { return member.kind == kind && member.name == name; });
 }
 
 /// Fields with that name in the user's variables: Rd is dry.Rd. Two at most.
@@ -200,7 +198,7 @@ std::string field_of_variable(lua_State* L, std::string_view name) {
     lua_pushnil(L);
     while (lua_next(L, -2) != 0) {
         const bool named = lua_type(L, -2) == LUA_TSTRING;
-        if (named && has_field(L, name) && std::string_view(lua_tostring(L, -2)) != "ans") {
+        if (named && has_member(L, name, lua::Kind::field) && std::string_view(lua_tostring(L, -2)) != "ans") {
             owners.push_back(fmt::format("{}.{}", lua_tostring(L, -2), name));
         }
         lua_pop(L, 1);
@@ -293,18 +291,18 @@ std::string similar_global(lua_State* L, std::string_view name) {
     return meant_by(L, name, {});
 }
 
-std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
+std::string nil_value(lua_State* L, lua_Debug* frame, std::string_view text, bool assignments) {
     luaL_checkstack(L, LUA_MINSTACK, "for the values of options");
     const std::vector<lua::Token> all = lua::tokens(text);
     int braces = 0;
-    for (std::size_t i = 2; i + 1 < all.size(); ++i) {
+    for (std::size_t i = 2; i < all.size(); ++i) {
         braces += all[i - 2].is("{") ? 1 : all[i - 2].is("}") ? -1 : 0;
-        const bool field = all[i + 1].is(".") && i + 3 < all.size();
-        const lua::Token& behind = all[i + (field ? 3 : 1)];
-        if (braces == 0 || !all[i - 1].is("=") || all[i].kind != lua::TokenKind::name ||
-            !(behind.is(",") || behind.is("}") || behind.is(";"))) {
-            continue;
-        }
+        assignments = assignments && !all[i].is("function");  // a function may use the variable later
+        const bool option = braces > 0, field = option && i + 3 < all.size() && all[i + 1].is(".");
+        const std::size_t next = i + (field ? 3 : 1);
+        const bool ends = next == all.size() || all[next].is(",") || all[next].is("}") || all[next].is(";") ||
+                          (!option && all[next].line > all[i].line);
+        if (!all[i - 1].is("=") || all[i].kind != lua::TokenKind::name || !ends || !(option || assignments)) continue;
         std::string whole_name(all[i].text), hint;
         if (field) {
             push_variable(L, frame, all[i].text);
@@ -318,7 +316,8 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text) {
         } else {
             continue;
         }
-        return fmt::format("'{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
+        if (option) return fmt::format("'{}' is nil, so {} is not given{}", whole_name, all[i - 2].text, hint);
+        return hint.empty() ? "" : fmt::format("'{}' is nil{}", whole_name, hint);
     }
     return "";
 }
@@ -343,9 +342,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
             return {habit};
         }
     }
-    if (MissingElement missing = missing_element(L, frame, message, statement); !missing.culprit.empty()) {
-        return {std::move(missing.end_of_sentence), std::move(missing.culprit)};
-    }
+    if (Advice missing = missing_element(L, frame, message, statement); !missing.culprit.empty()) return missing;
     if (message.type == "nil" && message.kind == "global") {
         return {meant_by(L, message.name, variables(L, frame), message.calculates ? Use::as_number : Use::any)};
     }
@@ -357,44 +354,26 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
 
 namespace {
 
-/// The call name(first, rest) as written.
-struct WrittenCall {
-    std::string_view first, rest;
-    bool simple = true;  ///< whether the first is a name, field or call, so that a colon may follow
-};
-
-std::optional<WrittenCall> call_of(std::string_view statement, std::string_view name) {
+/// The call name(object, ...) in the statement as one of a method: "object:name(...)". Empty without such a call, or if
+/// its first argument is a string, as in save("run.mat").
+std::string as_method(std::string_view statement, std::string_view name) {
     const std::vector<lua::Token> all = lua::tokens(statement);
-    for (std::size_t i = 0; i + 2 < all.size(); ++i) {
-        if (!all[i].is(name) || !all[i + 1].is("(")) continue;
-        WrittenCall call;
-        const std::size_t begin = all[i + 2].at;
-        std::size_t comma = 0;
-        int depth = 1;
-        for (std::size_t k = i + 2; k < all.size(); ++k) {
-            depth += all[k].nesting();
-            if (depth == 0) {
-                const std::size_t end = comma > 0 ? comma : all[k].at;
-                call.first = text::trimmed(statement.substr(begin, end - begin), " \n");
-                if (comma > 0) call.rest = text::trimmed(statement.substr(comma + 1, all[k].at - comma - 1), " \n");
-                return call.first.empty() ? std::nullopt : std::optional(call);
-            }
-            if (depth == 1 && comma == 0 && all[k].is(",")) comma = all[k].at;
-            const bool path = all[k].kind == lua::TokenKind::name || all[k].is(".") || all[k].is(":") ||
-                              all[k].nesting() < 0 || (all[k].nesting() > 0 && k > i + 2);
-            call.simple = call.simple && (depth > 1 || comma > 0 || path);
-        }
-        return std::nullopt;
+    std::size_t i = 2;
+    while (i < all.size() && !(all[i - 2].is(name) && all[i - 1].is("("))) ++i;
+    if (i >= all.size() || all[i].is(")") || all[i].kind == lua::TokenKind::string) return "";
+    const std::size_t begin = all[i].at;
+    bool simple = all[i].nesting() == 0;  // a name, field or call, which a colon may follow
+    for (int depth = 0; i < all.size() && (depth > 0 || !(all[i].is(",") || all[i].is(")"))); ++i) {
+        const bool path = all[i].kind == lua::TokenKind::name || all[i].is(".") || all[i].is(":");
+        simple = simple && (depth > 0 || path || all[i].nesting() > 0);
+        depth += all[i].nesting();
     }
-    return std::nullopt;
-}
-
-bool has_method(lua_State* L, int index, std::string_view name) {
-    const lua::Documented found = lua::documented(L, index);
-    if (found.owner == nullptr || found.member != nullptr || lua_isuserdata(L, index) == 0) return false;
-    const auto& members = found.owner->members;
-    return std::ranges::any_of(
-        members, [name](const lua::Member& member) { return member.kind == lua::Kind::method && member.name == name; });
+    if (i == all.size()) return "";
+    const std::string_view object = text::trimmed(statement.substr(begin, all[i].at - begin), " \n");
+    constexpr std::size_t longest = 40;
+    if (object.size() > longest || object.find('\n') != std::string_view::npos) return fmt::format("x:{}(...)", name);
+    return fmt::format("{}:{}({})", simple ? std::string(object) : fmt::format("({})", object), name,
+                       all[i].is(")") ? "" : "...");
 }
 
 /// Returns whether an object among the arguments of the innermost calls has a method of that name.
@@ -403,7 +382,7 @@ bool passes_its_owner(lua_State* L, std::string_view name) {
     lua_Debug frame{};
     for (int level = 0; level < innermost && lua_getstack(L, level, &frame) != 0; ++level) {
         for (int i = 1; const char* variable = lua_getlocal(L, &frame, i); ++i) {
-            const bool passed = *variable == '(' && has_method(L, lua_gettop(L), name);
+            const bool passed = *variable == '(' && has_member(L, name, lua::Kind::method);
             lua_pop(L, 1);
             if (passed) return true;
         }
@@ -454,25 +433,17 @@ std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::stri
     } else if (message.words.starts_with("bad argument #1 to '") && !message.quoted.empty()) {
         name = message.quoted.front();
     }
-    const auto call = name.empty() ? std::nullopt : call_of(statement, name);
-    const bool text = call && (call->first.front() == '"' || call->first.front() == '\'');  // save("run.mat")
-    if (!call || text || !passes_its_owner(L, name)) return "";
-    constexpr std::size_t longest = 60;
-    const std::string object = call->simple ? std::string(call->first) : fmt::format("({})", call->first);
-    const bool braces = call->rest.starts_with('{') && call->rest.ends_with('}');
-    std::string meant =
-        braces ? fmt::format("{}:{}{}", object, name, call->rest) : fmt::format("{}:{}({})", object, name, call->rest);
-    if (meant.size() > longest || meant.find('\n') != std::string::npos) meant = fmt::format("x:{}(...)", name);
+    const std::string meant = name.empty() ? "" : as_method(statement, name);
+    if (meant.empty() || !passes_its_owner(L, name)) return "";
     return fmt::format("; did you mean '{}'?", meant);
 }
 
-MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
-                               std::string_view statement) {
+Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     // Lua 5.4.4 says 'integer index', later versions '?'.
     if (message.type != "nil" || message.kind != "field" || (message.name != "integer index" && message.name != "?")) {
         return {};
     }
-    MissingElement possible;
+    Advice possible;
     const std::vector<lua::Token> all = lua::tokens(statement);
     for (std::size_t i = 1; i + 1 < all.size(); ++i) {
         if (!all[i].is("[") || all[i - 1].kind != lua::TokenKind::name) continue;
@@ -484,9 +455,9 @@ MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMes
         const auto number = alone ? number_of(L, frame, index) : std::nullopt;
         if (number && *number >= 1 && *number <= *count) continue;  // the element exists
         const std::size_t begin = all[path_begin(all, i - 1)].at;
-        MissingElement found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
-                                         text::counted(static_cast<std::size_t>(*count), "element")),
-                             std::string(number ? index.text : all[i - 1].text)};
+        Advice found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
+                                 text::counted(static_cast<std::size_t>(*count), "element")),
+                     std::string(number ? index.text : all[i - 1].text)};
         if (number) {
             if (*number < 1) found.end_of_sentence += ", which are counted from 1";
             if (index.kind == lua::TokenKind::name)

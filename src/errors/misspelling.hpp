@@ -36,8 +36,9 @@ std::string similar_global(lua_State* L, std::string_view name);
 std::vector<std::string> member_names(lua_State* L);
 
 /// "'theta_0' is nil, so theta0 is not given": for an undefined global, or a field, that is the whole value of an
-/// option in the text. A field counts only if another one has a similar name, as it may be missing on purpose.
-std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text);
+/// option in the text. A field counts only if another one has a similar name, as it may be missing on purpose. With
+/// `assignments` also "'rk4' is nil; did you mean 'integrator.rk4'?" for x = rk4, if there is a hint.
+std::string nil_value(lua_State* L, lua_Debug* frame, std::string_view text, bool assignments);
 
 // Methods called as functions, and missing elements: max(v) for v:max(), and the length of a list.
 
@@ -46,10 +47,6 @@ std::string nil_option(lua_State* L, lua_Debug* frame, std::string_view text);
 std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
 
 /// For an index beyond a list: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
-struct MissingElement {
-    std::string end_of_sentence, culprit;
-};
-MissingElement missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
-                               std::string_view statement);
+Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 
 }  // namespace dinal::errors

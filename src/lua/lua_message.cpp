@@ -43,8 +43,6 @@ LuaMessage running_message(std::string_view words) {
     message.name = variable.substr(std::min(message.kind.size() + 2, variable.size()));
     message.calls = words.starts_with("attempt to call a ");
     message.calculates = words.starts_with("attempt to perform arithmetic on ");
-    message.adds_texts = words.starts_with("attempt to add a 'string' with ") ||
-                         words.starts_with("attempt to add a 'number' with a 'string'");
     message.misses_a_value =
         words.find("nil") != std::string_view::npos && words.find("nil value (") == std::string_view::npos;
     return message;
@@ -58,6 +56,7 @@ std::optional<SyntaxMessage> syntax_message(std::string_view words) {
         return std::nullopt;
     }
     SyntaxMessage message{words.substr(0, std::min(at, words.find(" (to close ")))};
+    message.words = words;
     message.near = near.starts_with('<') ? end_of_chunk : near.substr(1, near.rfind('\'') - 1);
     if (words.starts_with('\'')) {
         message.expected = words.substr(1, words.find('\'', 1) - 1);

@@ -17,7 +17,6 @@ struct LuaMessage {
     std::vector<std::string_view> quoted = {};  ///< all quoted parts
     bool calls = false;                         ///< "attempt to call"
     bool calculates = false;                    ///< "attempt to perform arithmetic on"
-    bool adds_texts = false;                    ///< "attempt to add a 'string' with a 'number'"
     bool misses_a_value = false;                ///< a nil without a name in the message: "(number expected, got nil)"
 };
 LuaMessage running_message(std::string_view words);
@@ -29,6 +28,7 @@ struct SyntaxMessage {
     std::string_view near = {};      ///< "print"; "<eof>" at the end
     std::string_view opened = {};    ///< "{", the bracket that is not closed, if known
     int opened_line = 0;
+    std::string_view words = {};  ///< all of it
 };
 /// Empty for other messages.
 std::optional<SyntaxMessage> syntax_message(std::string_view words);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <span>
 #include <string_view>
@@ -54,10 +55,8 @@ std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
     return count;
 }
 
-bool is_global(lua_State* L, std::string_view name) {
-    const bool there = lua::push_global(L, name) != LUA_TNIL;
-    lua_pop(L, 1);
-    return there;
+std::string without_semicolon(const std::string& remark) {
+    return remark.substr(std::min<std::size_t>(2, remark.size()));
 }
 
 }  // namespace
@@ -71,9 +70,9 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
         return "";
     }
     const std::string_view name = all.front().text;
-    if (is_global(L, name)) {
-        return "";
-    }
+    const bool is_known = lua::push_global(L, name) != LUA_TNIL;
+    lua_pop(L, 1);
+    if (is_known) return "";
     const std::string cure = errors::foreign_tokens(name, errors::Seen::typed);
     if (!cure.empty()) return "there is no such variable" + cure;
     const std::string hint = errors::similar_global(L, name);
@@ -85,8 +84,7 @@ std::string element_notice(lua_State* L, const Chunk& chunk) {
     if (all.size() < 3) return "";
     if (all.back().is("]")) {
         const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
-        const std::string remark = errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence;
-        return remark.empty() ? "" : remark.substr(2);
+        return without_semicolon(errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence);
     }
     if (all.back().kind != lua::TokenKind::name || !all[all.size() - 2].is(".")) return "";
     const int top = lua_gettop(L);
@@ -129,30 +127,13 @@ std::string colon_notice(lua_State* L, const std::string& text) {
                              help::signature(found.member->doc));
 }
 
-/// Detects "for i in range(5): print(i)", which Lua reads as a method call. A method never follows a blank.
-std::string python_block(const std::vector<lua::Token>& all) {
-    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
-        if (!all[i].is(":") || all[i].end() == all[i + 1].at) continue;
-        if (all.front().is("for")) return "a loop is: for i = 1, 10 do ... end";
-        if (all.front().is("while")) return "a loop is: while x < 3 do ... end";
-        if (all.front().is("if")) return "in Lua: if x > 3 then ... end";
-    }
-    return "";
-}
-
 }  // namespace
 
 std::string unfinished_notice(lua_State* L, const std::string& text) {
-    if (std::string notice = colon_notice(L, text); !notice.empty()) return notice;
-    if (text.find('\n') != std::string::npos) return "";
-    const std::vector<lua::Token> all = lua::tokens(text);
-    if (std::string notice = python_block(all); !notice.empty()) return notice;
-    if (all.size() > 1 && all.front().is("cd")) return ":cd folder changes the current folder";  // cd ..
-    if (all.size() > 1 && all.front().is("ls")) return ":ls folder lists the files of a folder";
-    const bool percent = all.size() > 1 && all.back().is("%") && all[all.size() - 2].kind == lua::TokenKind::number &&
-                         all[all.size() - 2].end() == all.back().at;
-    return percent ? fmt::format("% is the remainder of a division; {0} percent are {0}/100", all[all.size() - 2].text)
-                   : "";
+    const std::string notice = colon_notice(L, text);
+    return notice.empty() && text.find('\n') == std::string::npos
+               ? without_semicolon(errors::foreign_tokens(text, errors::Seen::unfinished))
+               : notice;
 }
 
 std::string local_notice(const std::string& text) {
@@ -175,33 +156,11 @@ std::string local_notice(const std::string& text) {
 }
 
 std::string nil_notice(lua_State* L, const std::string& text) {
-    if (std::string notice = errors::nil_option(L, nullptr, text); !notice.empty()) return notice;
-    const std::vector<lua::Token> all = lua::tokens(text);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (all[i].is("function")) {
-            break;  // a function may use the variable later
-        }
-        const bool assigned = i > 1 && all[i - 1].is("=") && all[i - 2].kind == lua::TokenKind::name;
-        const bool alone = i + 1 == all.size() || all[i + 1].is(",") || all[i + 1].is("}") || all[i + 1].is(";") ||
-                           all[i + 1].line > all[i].line;
-        if (all[i].kind == lua::TokenKind::name && assigned && alone && uses(all, all[i].text) == 1 &&
-            !is_global(L, all[i].text)) {
-            const std::string hint = errors::similar_global(L, all[i].text);
-            return hint.empty() ? "" : fmt::format("'{}' is nil{}", all[i].text, hint);
-        }
-    }
-    return "";
+    return errors::nil_value(L, nullptr, text, true);
 }
 
 std::string comma_notice(const std::string& text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
-    const bool shape = all.size() == 5 && all[0].kind == lua::TokenKind::name && all[1].is("=") && all[3].is(",") &&
-                       all[2].kind == lua::TokenKind::number && all[4].kind == lua::TokenKind::number;
-    if (!shape || all[2].end() + 1 != all[4].at) {
-        return "";
-    }
-    return fmt::format("{},{} are two numbers, and {} is the first; a decimal point is a point: {}.{}", all[2].text,
-                       all[4].text, all[0].text, all[2].text, all[4].text);
+    return without_semicolon(errors::foreign_tokens(text, errors::Seen::complete));
 }
 
 std::string overwritten_notice(lua_State* L, const std::string& text) {
@@ -249,7 +208,7 @@ std::string nil_option_now(lua_State* L) {
     if (frame.linedefined == frame.currentline || !seen.emplace(frame.source, frame.currentline).second) return "";
     const auto source = errors::source_of_frame(L, frame);
     if (!source) return "";
-    const std::string notice = errors::nil_option(L, &frame, source->statement(frame.currentline));
+    const std::string notice = errors::nil_value(L, &frame, source->statement(frame.currentline), false);
     return notice.empty() ? "" : fmt::format("{}:{}: {}", frame.short_src, frame.currentline, notice);
 }
 
