@@ -158,7 +158,7 @@ bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
 /// comparison, so the mask would be the first's. Lua before 5.4.7 compiles v[v > 0] wrongly if v is an upvalue: it
 /// indexes another register.
 std::string fault_of_mask(lua_State* L, lua_Debug& caller, std::string_view statement) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     int depth = 0;
     bool compares = false, joins = false;
     std::string_view owner;

@@ -176,7 +176,7 @@ bool is_value(const lua::Token& token) {
 
 /// The place of the first suspect in the statement; none if only the line is known.
 std::optional<Mark> marked(std::string_view statement, const std::vector<std::string>& names) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (const std::string& name : names) {
         const auto is_it = [&name](const lua::Token& token) {
             return token.text == name && token.kind != lua::TokenKind::comment;
@@ -323,7 +323,7 @@ lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const s
 
 /// The remarks on a message about the result of the function at the index.
 lua::Remarks remarks_on_result(const text::Error& error, const SourceText& source, int line) {
-    const std::vector<lua::Token> all = lua::tokens(source.text);
+    const lua::Tokens all = lua::tokens(source.text);
     const bool returns = std::ranges::any_of(all, [](const lua::Token& t) { return t.is("return"); });
     std::vector<std::string> names = suspects(error);
     names.insert(names.end(), {"return", "function"});

@@ -254,7 +254,7 @@ std::string called_name(lua_State* L, std::string_view name, std::string_view ty
 
 /// Remark on run.energy.total: a field is read from a function that should be called.
 std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!all[i].is(message.name)) continue;
         std::string name(message.name);
@@ -275,7 +275,7 @@ bool is_number(std::string_view text) {
 }  // namespace
 
 std::string foreign_tokens(std::string_view statement, Seen seen, std::optional<std::string_view> culprit) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (const Habit& one : habits[static_cast<std::size_t>(seen)]) {
         const bool begins = one.pattern.starts_with("^ ");
         for (std::size_t i = 0; i < (begins ? 1 : all.size()); ++i) {
@@ -325,7 +325,7 @@ constexpr std::string_view printed_signs[][2] = {{"“", "\""}, {"”", "\""}, {
 /// The message with the rejected token and its context.
 struct Stumble {
     const lua::SyntaxMessage& message;
-    std::vector<lua::Token> all = {};
+    lua::Tokens all = {};
     std::size_t at = 0;  ///< index of the rejected token in `all`; 0 if unknown or the first
 
     const lua::Token& token() const { return all[at]; }

@@ -77,13 +77,13 @@ std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
 }
 
 /// The beginning of x.y.z, whose last name is the token `last`.
-std::size_t path_begin(const std::vector<lua::Token>& all, std::size_t last) {
+std::size_t path_begin(const lua::Tokens& all, std::size_t last) {
     while (last >= 2 && all[last - 1].is(".") && all[last - 2].kind == lua::TokenKind::name) last -= 2;
     return last;
 }
 
 /// Pushes the value of x.y.z, whose last name is the token `last`; runs no user code.
-void push_path(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& all, std::size_t last) {
+void push_path(lua_State* L, lua_Debug* frame, const lua::Tokens& all, std::size_t last) {
     const std::size_t first = path_begin(all, last);
     push_variable(L, frame, all[first].text);
     for (std::size_t k = first + 2; k <= last; k += 2) {
@@ -94,7 +94,7 @@ void push_path(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& al
 
 /// For "x.y.name" or "x.y:name" in the statement: the names of x.y.
 std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_view name, std::string_view statement) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (std::size_t i = 2; i < all.size(); ++i) {
         const bool is_part = all[i].is(name) && (all[i - 1].is(".") || all[i - 1].is(":"));
         if (!is_part || all[i - 2].kind != lua::TokenKind::name) continue;
@@ -107,7 +107,7 @@ std::vector<std::string> siblings(lua_State* L, lua_Debug* frame, std::string_vi
 }
 
 /// Returns whether the statement itself declares the name: local x, function(x), for x, { x = 1 }.
-bool is_declared(const std::vector<lua::Token>& all, std::string_view name) {
+bool is_declared(const lua::Tokens& all, std::string_view name) {
     bool declaring = false;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const lua::Token& token = all[i];
@@ -138,7 +138,7 @@ bool is_variable(lua_State* L, lua_Debug* frame, std::string_view name) {
 }
 
 /// Returns whether the token is a global that is nil and that the statement does not declare.
-bool is_nil_global(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>& all, std::size_t i) {
+bool is_nil_global(lua_State* L, lua_Debug* frame, const lua::Tokens& all, std::size_t i) {
     const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("goto"));
     if (all[i].kind != lua::TokenKind::name || field || is_declared(all, all[i].text)) return false;
     if (is_variable(L, frame, all[i].text)) return false;
@@ -150,7 +150,7 @@ bool is_nil_global(lua_State* L, lua_Debug* frame, const std::vector<lua::Token>
 /// A global in the statement that is nil: the value of the missing option, `option = x`; otherwise one with a likely
 /// other spelling, or any if it is known that something is nil.
 Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view option, bool any) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (std::size_t i = 0; i < all.size(); ++i) {
         if (!is_nil_global(L, frame, all, i)) continue;
         const std::string hint = similar_global(L, all[i].text);
@@ -293,7 +293,7 @@ std::string similar_global(lua_State* L, std::string_view name) {
 
 std::string nil_value(lua_State* L, lua_Debug* frame, std::string_view text, bool assignments) {
     luaL_checkstack(L, LUA_MINSTACK, "for the values of options");
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     int braces = 0;
     for (std::size_t i = 2; i < all.size(); ++i) {
         braces += all[i - 2].is("{") ? 1 : all[i - 2].is("}") ? -1 : 0;
@@ -357,7 +357,7 @@ namespace {
 /// The call name(object, ...) in the statement as one of a method: "object:name(...)". Empty without such a call, or if
 /// its first argument is a string, as in save("run.mat").
 std::string as_method(std::string_view statement, std::string_view name) {
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     std::size_t i = 2;
     while (i < all.size() && !(all[i - 2].is(name) && all[i - 1].is("("))) ++i;
     if (i >= all.size() || all[i].is(")") || all[i].kind == lua::TokenKind::string) return "";
@@ -444,7 +444,7 @@ Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& me
         return {};
     }
     Advice possible;
-    const std::vector<lua::Token> all = lua::tokens(statement);
+    const lua::Tokens all = lua::tokens(statement);
     for (std::size_t i = 1; i + 1 < all.size(); ++i) {
         if (!all[i].is("[") || all[i - 1].kind != lua::TokenKind::name) continue;
         push_path(L, frame, all, i - 1);

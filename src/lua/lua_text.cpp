@@ -23,8 +23,8 @@ class Cutter {
 public:
     explicit Cutter(std::string_view text) : text_(text) {}
 
-    std::vector<Token> all() {
-        std::vector<Token> found;
+    Tokens all() {
+        Tokens found;
         while (skip_space()) {
             Token token = next();
             line_ += static_cast<int>(std::ranges::count(token.text, '\n'));
@@ -146,7 +146,7 @@ private:
 
 }  // namespace
 
-std::vector<Token> tokens(std::string_view text) {
+Tokens tokens(std::string_view text) {
     return Cutter(text).all();
 }
 
@@ -168,7 +168,7 @@ std::vector<std::string> text_keys(lua_State* L, int index) {
 }
 
 bool is_name(std::string_view text) {
-    const std::vector<Token> all = tokens(text);
+    const Tokens all = tokens(text);
     return all.size() == 1 && all.front().kind == TokenKind::name && all.front().text.size() == text.size();
 }
 

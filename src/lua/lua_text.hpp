@@ -26,8 +26,10 @@ struct Token {
     int nesting() const { return is("(") || is("{") || is("[") ? 1 : is(")") || is("}") || is("]") ? -1 : 0; }
 };
 
+using Tokens = std::vector<Token>;
+
 /// All tokens of a text, which need not compile; without white space. They refer to the text.
-std::vector<Token> tokens(std::string_view text);
+Tokens tokens(std::string_view text);
 
 /// All keywords of Lua.
 const std::vector<std::string_view>& keywords();

@@ -50,7 +50,7 @@ std::string returned(std::string_view expression) {
 
 /// The text without semicolons and comments at its end.
 std::string_view without_semicolons(std::string_view text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     std::string_view result = text;
     for (auto token = all.rbegin(); token != all.rend(); ++token) {
         if (token->is(";")) {
@@ -102,7 +102,7 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
 
 /// The innermost unclosed bracket.
 std::optional<lua::Token> open_bracket(std::string_view text) {
-    std::vector<lua::Token> open;
+    lua::Tokens open;
     for (const lua::Token& token : lua::tokens(text)) {
         if (token.nesting() > 0) {
             open.push_back(token);
@@ -136,7 +136,7 @@ std::string what_is_missing(lua_State* L, std::string_view text) {
 
 /// The words after an initial `return`.
 std::string_view without_return(std::string_view text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     return !all.empty() && all.front().is("return") ? text.substr(all.front().end()) : text;
 }
 
@@ -175,7 +175,7 @@ Chunk compile(lua_State* L, const std::string& text) {
 }
 
 bool only_reads_variable(const Chunk& chunk) {
-    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
+    const lua::Tokens all = lua::tokens(chunk.expression);
     const auto code =
         std::ranges::count_if(all, [](const lua::Token& token) { return token.kind != lua::TokenKind::comment; });
     return chunk.statements.empty() && code == 1 && all.front().kind == lua::TokenKind::name;

@@ -344,7 +344,7 @@ int show_value(lua_State* L) {
 }  // namespace
 
 bool is_question(std::string_view line) {
-    const std::vector<lua::Token> all = lua::tokens(line);
+    const lua::Tokens all = lua::tokens(line);
     return line.find('\n') == std::string_view::npos && !all.empty() && (all.front().is("?") || all.back().is("?"));
 }
 
@@ -359,7 +359,7 @@ std::string answer_to(lua_State* L, std::string_view line) {
         return help::help_about(words, screen);
     }
     const int top = lua_gettop(L);
-    const std::vector<lua::Token> all = lua::tokens(words);
+    const lua::Tokens all = lua::tokens(words);
     const Meaning found = meaning(L, all);
     std::string answer = entry(found, screen);
     if (const std::vector<std::string> names = help::help_names();

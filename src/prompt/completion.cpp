@@ -348,7 +348,7 @@ std::string signature_hint(lua_State* L, std::string_view before) {
             part += all[i];
             continue;
         }
-        const std::vector<lua::Token> words = lua::tokens(part);
+        const lua::Tokens words = lua::tokens(part);
         const auto is_given = [&](const lua::Token& word) { return text::contains(typed.call()->given, word.text); };
         if (!words.empty() && !std::ranges::any_of(words, is_given)) {
             hint.append(hint.empty() ? "" : ", ").append(part, std::min(part.find_first_not_of(' '), part.size()));

@@ -54,7 +54,7 @@ public:
     std::span<const lua::Token> owner() const { return owner_; }
     char separator() const { return separator_; }
     const std::optional<OpenCall>& call() const { return call_; }
-    const std::vector<lua::Token>& tokens_before() const { return tokens_; }
+    const lua::Tokens& tokens_before() const { return tokens_; }
 
 private:
     void find_cursor(std::string_view before);
@@ -63,7 +63,7 @@ private:
     std::vector<std::size_t> open_brackets() const;
     std::optional<std::string_view> name_of_table(std::size_t bracket, std::size_t outer) const;
 
-    std::vector<lua::Token> tokens_;  // without the word at the cursor
+    lua::Tokens tokens_;  // without the word at the cursor
     Cursor cursor_ = Cursor::nothing;
     std::string_view word_;
     std::span<const lua::Token> owner_;

@@ -267,7 +267,7 @@ void add_paragraphs(std::string_view text, std::vector<std::string>& paragraphs)
 }
 
 Essence essence_of(const HandIn& hand_in) {
-    const std::vector<lua::Token> all = lua::tokens(hand_in.text);
+    const lua::Tokens all = lua::tokens(hand_in.text);
     Essence essence;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const bool number = i > 1 && all[i - 2].is("number") && all[i - 1].is("(");

@@ -33,7 +33,7 @@ bool closes_block(const lua::Token& token) {
 }
 
 /// The names declared by `local` at token `at`.
-std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::size_t at) {
+std::vector<std::string_view> declared(const lua::Tokens& all, std::size_t at) {
     std::vector<std::string_view> names;
     std::size_t i = at + 1 + (at + 1 < all.size() && all[at + 1].is("function") ? 1 : 0);
     for (; i < all.size() && all[i].kind == lua::TokenKind::name; i += 2) {
@@ -46,7 +46,7 @@ std::vector<std::string_view> declared(const std::vector<lua::Token>& all, std::
 }
 
 /// The number of uses of a variable, without fields such as lab.given. 1 means only its declaration.
-std::ptrdiff_t uses(const std::vector<lua::Token>& all, std::string_view name) {
+std::ptrdiff_t uses(const lua::Tokens& all, std::string_view name) {
     std::ptrdiff_t count = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":"));
@@ -62,7 +62,7 @@ std::string without_semicolon(const std::string& remark) {
 }  // namespace
 
 std::string name_notice(lua_State* L, const Chunk& chunk) {
-    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
+    const lua::Tokens all = lua::tokens(chunk.expression);
     if (all.size() == 1 && all.front().is("help")) {
         return "help() starts a tour; ?name explains a name";
     }
@@ -80,7 +80,7 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
 }
 
 std::string element_notice(lua_State* L, const Chunk& chunk) {
-    const std::vector<lua::Token> all = lua::tokens(chunk.expression);
+    const lua::Tokens all = lua::tokens(chunk.expression);
     if (all.size() < 3) return "";
     if (all.back().is("]")) {
         const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
@@ -111,7 +111,7 @@ std::string colon_notice(lua_State* L, const std::string& text) {
     if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
         return "";
     }
-    std::vector<lua::Token> expression(typed.owner().begin(), typed.owner().end());
+    lua::Tokens expression(typed.owner().begin(), typed.owner().end());
     expression.push_back({lua::TokenKind::symbol, ":"});
     expression.push_back({lua::TokenKind::name, typed.word()});
     const int top = lua_gettop(L);
@@ -137,7 +137,7 @@ std::string unfinished_notice(lua_State* L, const std::string& text) {
 }
 
 std::string local_notice(const std::string& text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     const bool script = text.find('\n') != std::string::npos;
     std::vector<std::string_view> names;
     int depth = 0;
@@ -164,7 +164,7 @@ std::string comma_notice(const std::string& text) {
 }
 
 std::string overwritten_notice(lua_State* L, const std::string& text) {
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     int depth = 0;
     for (std::size_t i = 0; i < all.size(); ++i) {
         depth += all[i].is("{") || all[i].is("(") ? 1 : all[i].is("}") || all[i].is(")") ? -1 : 0;

@@ -244,7 +244,7 @@ bool run_prompt(lua_State* L, Start start) {
 namespace {
 
 bool has(const std::string& text, std::string_view word) {
-    const std::vector<lua::Token> all = lua::tokens(text);
+    const lua::Tokens all = lua::tokens(text);
     return std::ranges::any_of(all, [word](const lua::Token& token) {
         return (token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::keyword || token.is("::")) &&
                token.text == word;
@@ -258,14 +258,14 @@ bool needs_block(const std::string& statements) {
 
 /// The expression inside brackets; a comment at its end must not swallow the closing one.
 std::string in_call(std::string_view function, const std::string& expression) {
-    const std::vector<lua::Token> all = lua::tokens(expression);
+    const lua::Tokens all = lua::tokens(expression);
     const bool comment = !all.empty() && all.back().kind == lua::TokenKind::comment;
     return fmt::format("{}({}{})", function, expression, comment ? "\n" : "");
 }
 
 /// Returns whether the expression is a call, which is a statement by itself.
 bool is_call(const std::string& expression) {
-    const std::vector<lua::Token> all = lua::tokens(expression);
+    const lua::Tokens all = lua::tokens(expression);
     const auto last =
         std::find_if(all.rbegin(), all.rend(), [](const lua::Token& t) { return t.kind != lua::TokenKind::comment; });
     return last != all.rend() && (last->is(")") || last->is("}") || last->kind == lua::TokenKind::string) &&
