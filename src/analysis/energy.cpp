@@ -7,9 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/accurate_sum.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/lowered.hpp"
+#include "motion/clock.hpp"
 
 namespace dinal::analysis {
 
@@ -30,7 +30,7 @@ public:
     }
 
 private:
-    std::array<AccurateSum, works.size()> sums_;
+    std::array<motion::AccurateSum, works.size()> sums_;
 };
 
 Work operator+(Work a, const Work& b) {
@@ -125,7 +125,7 @@ private:
     const Store& store_;
     std::vector<Stretch>::const_iterator stretch_, last_;
     WorkSum present_, total_;
-    AccurateSum flow_;
+    motion::AccurateSum flow_;
     Energy energy_;
 };
 

@@ -7,7 +7,6 @@
 #include <numeric>
 #include <vector>
 
-#include "analysis/phase_lag.hpp"
 #include "analysis/recurrence.hpp"
 #include "model/excitation.hpp"
 #include "model/laws/coulomb.hpp"

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "analysis/map.hpp"
+#include "analysis/forced_search.hpp"
 #include "analysis/recurrence.hpp"
 #include "analysis/steady.hpp"
 #include "model/lowered.hpp"

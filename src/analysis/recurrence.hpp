@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "model/drive.hpp"
+#include "model/excitation.hpp"
 #include "motion/run.hpp"
 
 namespace dinal::analysis {
@@ -60,5 +61,11 @@ struct Swings {
 
 /// `period` of M, or 0.
 Swings swings(const std::vector<Stretch>& stretches, double period);
+
+/// The lag of theta's fundamental behind that of M over the period of M before `until`, rad, from -pi/2 to 3 pi/2. None
+/// if M has no fundamental or depends on the motion, or if there are too few rows. User functions are not called again:
+/// their M is read from the rows.
+std::optional<double> phase_lag(const motion::Run& run, const model::Excitation& excitation, double period,
+                                double until);
 
 }  // namespace dinal::analysis

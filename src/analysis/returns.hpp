@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/map.hpp"
+#include "analysis/forced_search.hpp"
 #include "analysis/steady.hpp"
 #include "motion/engine/history.hpp"
 

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <optional>
 
-#include "analysis/map.hpp"
+#include "analysis/forced_search.hpp"
 #include "analysis/steady.hpp"
 #include "theory/theory_free.hpp"
 

@@ -1,4 +1,4 @@
-// Steady motions: fixed points of a map from one return of the motion to the next (map.hpp). docs/theory.md,
+// Steady motions: fixed points of a map from one return of the motion to the next (forced_search.hpp). docs/theory.md,
 // section 10.
 #pragma once
 

@@ -34,7 +34,7 @@
 #include "model/laws/bristle.hpp"
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
-#include "model/springs/polynomial_spring.hpp"
+#include "model/springs.hpp"
 #include "model/system.hpp"
 #include "text/option.hpp"
 #include "text/suggest.hpp"

@@ -19,7 +19,7 @@
 #include "lua/user_function.hpp"
 #include "model/controller.hpp"
 #include "model/functions.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"
 

@@ -8,8 +8,7 @@
 #include "api/system_options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
-#include "model/springs/polynomial_spring.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 #include "source/describe.hpp"
 
 namespace dinal::api {

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/accurate_sum.hpp"
 #include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "errors/error_remarks.hpp"
@@ -21,6 +20,7 @@
 #include "lua/options.hpp"
 #include "lua/values.hpp"
 #include "lua/vector.hpp"
+#include "motion/clock.hpp"
 #include "text/words.hpp"
 
 namespace dinal::api::vectors {
@@ -236,7 +236,7 @@ int holds(lua_State* L) {
 // ---- sums and extremes
 
 double sum_of(Values v) {
-    analysis::AccurateSum sum;
+    motion::AccurateSum sum;
     for (const double x : v) sum.add(x);
     return sum.value();
 }
@@ -277,7 +277,7 @@ double deviation(Values v) {
 }
 
 void cumulate(Values v, std::vector<double>& sums) {
-    analysis::AccurateSum sum;
+    motion::AccurateSum sum;
     for (std::size_t i = 0; i < v.size(); ++i) {
         sum.add(v[i]);
         sums[i] = sum.value();
@@ -402,7 +402,7 @@ int pick(lua_State* L) {
 
 Expected<double> dot(const Vector& v, const Vector& w) {
     if (v.size() != w.size()) return unequal_sizes(v.size(), w.size());
-    analysis::AccurateSum sum;
+    motion::AccurateSum sum;
     for (std::size_t i = 0; i < v.size(); ++i) sum.add(v.begin()[i] * w.begin()[i]);
     return sum.value();
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "files/text_input.hpp"
+#include "files/csv.hpp"
 #include "lua/memory_limit.hpp"
 #include "motion/columns.hpp"
 #include "text/characters.hpp"

@@ -11,8 +11,7 @@
 #include <system_error>
 #include <vector>
 
-#include "errors/habits.hpp"
-#include "errors/misspelling.hpp"
+#include "errors/advice.hpp"
 #include "files/file.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/lua_message.hpp"

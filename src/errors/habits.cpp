@@ -1,4 +1,4 @@
-#include "errors/habits.hpp"
+#include "errors/advice.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "errors/misspelling.hpp"
+#include "errors/advice.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "errors/habits.hpp"
 #include "lua/bind.hpp"
 #include "lua/lua_text.hpp"
 #include "text/suggest.hpp"

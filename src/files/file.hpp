@@ -3,7 +3,6 @@
 #pragma once
 
 #include <sys/stat.h>
-
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -117,5 +116,17 @@ void forget_temporary(const std::string& name);
 /// Installs the handlers. An ignored signal (nohup) stays ignored. SIGXFSZ becomes an error of the file that is too
 /// large.
 void clean_up_on_signals();
+
+/// Confines the whole process: OutputFile and read_file refuse anything but regular files in the current folder or
+/// below. Links are resolved first.
+void confine_files();
+
+/// Allows one file elsewhere to be read: the script, whose text a file of results may need.
+void allow_reading(const std::string& path);
+
+enum class Access { read, write };
+
+/// Returns the reason why this path cannot be used; none if it is allowed.
+std::optional<std::string> outside(const std::string& path, Access access);
 
 }  // namespace dinal::files

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "files/csv.hpp"
-#include "files/text_input.hpp"
 #include "text/words.hpp"
 
 namespace dinal::files {

@@ -21,7 +21,7 @@
 #include "lua/values.hpp"
 #include "lua/worker_state.hpp"
 #include "plots/svg_words.hpp"
-#include "source/value_text.hpp"
+#include "source/describe.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
 

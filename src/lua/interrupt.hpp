@@ -1,4 +1,4 @@
-// Stops a chunk from outside: Ctrl-C, and the limits of limits.hpp. It stops the running Lua code, including
+// Stops a chunk from outside: Ctrl-C, and the limits of safe_mode.hpp. It stops the running Lua code, including
 // coroutines, and through stop_requested() the C++ stepping loop.
 //
 // No hook is set until a stop is requested: then the signal handler sets one on the running Lua thread. That thread is

@@ -174,7 +174,7 @@ void reset_globals(lua_State* L) {
 
 namespace {
 
-// Lua's own functions, called on our frame as in coroutines.cpp; atomic for the same reason.
+// Lua's own functions, called on our frame as in interrupt.cpp; atomic for the same reason.
 std::atomic<lua_CFunction> original_print = nullptr;
 std::atomic<lua_CFunction> original_write = nullptr;       // io.write
 std::atomic<lua_CFunction> original_file_write = nullptr;  // file:write

@@ -6,7 +6,7 @@
 
 #include "model/laws/coulomb.hpp"
 #include "model/laws/user_law.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 #include "model/system.hpp"
 
 namespace dinal::model {

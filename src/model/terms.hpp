@@ -6,9 +6,7 @@
 #include "model/terms/levels.hpp"
 #include "model/terms/polyline.hpp"
 #include "model/terms/scripted.hpp"
-#include "model/terms/sines.hpp"
 #include "model/terms/smooth.hpp"
-#include "model/terms/waves.hpp"
 
 namespace dinal::model {
 

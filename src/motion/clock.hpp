@@ -1,5 +1,7 @@
-// A time in two doubles, which stays accurate over tens of thousands of restarts.
+// Numbers in two doubles: a time, which stays accurate over tens of thousands of restarts, and the sum of many numbers.
 #pragma once
+
+#include <cmath>
 
 namespace dinal::motion {
 
@@ -18,6 +20,20 @@ struct Clock {
         const double time = sum + rest;
         return {time, rest - (time - sum)};
     }
+};
+
+/// Neumaier's sum: collects the rounding errors and adds them at the end.
+class AccurateSum {
+public:
+    void add(double x) {
+        const double next = sum_ + x;
+        lost_ += std::fabs(sum_) >= std::fabs(x) ? (sum_ - next) + x : (x - next) + sum_;
+        sum_ = next;
+    }
+    double value() const { return std::isfinite(lost_) ? sum_ + lost_ : sum_; }
+
+private:
+    double sum_ = 0, lost_ = 0;
 };
 
 }  // namespace dinal::motion

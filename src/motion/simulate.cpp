@@ -10,7 +10,7 @@
 #include <string>
 
 #include "model/controller.hpp"
-#include "model/springs/polynomial_spring.hpp"
+#include "model/springs.hpp"
 #include "motion/stillness.hpp"
 #include "motion/witness.hpp"
 

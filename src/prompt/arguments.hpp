@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lua/limits.hpp"
+#include "lua/safe_mode.hpp"
 #include "text/expected.hpp"
 
 namespace dinal::prompt {

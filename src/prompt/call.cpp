@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "errors/error_remarks.hpp"
-#include "files/confinement.hpp"
+#include "files/file.hpp"
 #include "lua/error_memory.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/limits.hpp"
 #include "lua/lua_message.hpp"
 #include "lua/lua_text.hpp"
 #include "lua/memory_limit.hpp"

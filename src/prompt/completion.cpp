@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "errors/misspelling.hpp"
+#include "errors/advice.hpp"
 #include "help/help_text.hpp"
 #include "help/library.hpp"
 #include "lua/bind.hpp"

@@ -23,8 +23,8 @@
 
 #include "files/file.hpp"
 #include "lab/lab_course.hpp"
-#include "lua/limits.hpp"
 #include "lua/lua_text.hpp"
+#include "lua/safe_mode.hpp"
 #include "prompt/output.hpp"
 #include "prompt/script.hpp"
 #include "prompt/user_files.hpp"

@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "errors/advice.hpp"
 #include "errors/error_remarks.hpp"
-#include "errors/habits.hpp"
-#include "errors/misspelling.hpp"
 #include "help/help_text.hpp"
 #include "help/library.hpp"
 #include "lua/bind.hpp"

@@ -13,13 +13,11 @@
 #include <memory>
 #include <string_view>
 
-#include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "help/library.hpp"
 #include "lab/lab_course.hpp"
 #include "lab/report.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/limits.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/options.hpp"
 #include "lua/safe_mode.hpp"

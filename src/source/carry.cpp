@@ -13,7 +13,7 @@
 #include "model/controller.hpp"
 #include "model/functions.hpp"
 #include "motion/integrators.hpp"
-#include "source/bytecode.hpp"
+#include "source/fingerprint.hpp"
 
 namespace dinal::source {
 namespace {

@@ -1,9 +1,17 @@
-// Systems, excitations and integrators as Lua text that constructs them.
+// Values, functions, systems, excitations and integrators as Lua text that constructs them, so that a file of results
+// can state how to repeat the run.
 #pragma once
 
+#include <functional>
+#include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "lua/lua_headers.hpp"
+#include "lua/lua_text.hpp"
 #include "model/excitation.hpp"
 #include "model/oscillator.hpp"
 #include "model/system.hpp"
@@ -15,7 +23,45 @@ class LuaFunction;
 
 namespace dinal::source {
 
-class ValueText;
+/// Converts values to Lua expressions. Functions include their upvalues; globals that they use become separate lines.
+class ValueText {
+public:
+    /// `most_values` limits the number of values; larger data belong in a file.
+    explicit ValueText(lua_State* L, int most_values = 10'000) : L_(L), budget_(most_values) {}
+
+    /// Returns a variable for a value that is transferred separately: a vector, a function of another language, an
+    /// object without text; empty for others. Size is then unlimited.
+    using Aside = std::function<std::string(int index)>;
+    ValueText(lua_State* L, Aside aside) : L_(L), aside_(std::move(aside)), budget_(std::numeric_limits<int>::max()) {}
+
+    /// An expression that constructs the value at `index`. If none exists, returns `nil` and adds to remarks().
+    std::string expression(int index);
+
+    /// The variable for the numbers, if vectors are transferred separately.
+    std::optional<std::string> aside(const std::vector<double>& numbers);
+
+    /// Lines such as "w = 3" that must precede the expressions.
+    const std::vector<std::string>& globals() const { return globals_; }
+    /// Comments on values that could not be written.
+    const std::vector<std::string>& remarks() const { return remarks_; }
+
+private:
+    std::string table(int index);
+    std::string function(int index);
+    std::string object(int index);
+    std::string with_locals(int index, const std::string& source);
+    void note_globals(int function_index, std::string_view source);
+    void note_global(int environment, const std::string& name);
+    std::string nothing(std::string_view what);
+
+    lua_State* L_;
+    Aside aside_ = {};
+    std::vector<std::string> globals_;
+    std::vector<std::string> names_;  // globals finished or in progress
+    std::vector<const void*> open_;   // tables and functions in progress: a cycle has no text
+    std::vector<std::string> remarks_;
+    int budget_;  // number of values that may still be written
+};
 
 /// The function if the excitation is nothing else, otherwise nullptr.
 const lua::LuaFunction* function_alone(const model::Excitation& excitation);

@@ -8,7 +8,6 @@
 #include "lua/user_function.hpp"
 #include "motion/witness.hpp"
 #include "source/describe.hpp"
-#include "source/value_text.hpp"
 #include "text/characters.hpp"
 #include "text/version.hpp"
 #include "text/words.hpp"

@@ -31,7 +31,6 @@
 #include <vector>
 
 #include "api/drive_options.hpp"
-#include "files/confinement.hpp"
 #include "files/file.hpp"
 #include "lua/interrupt.hpp"
 #include "lua/lua_text.hpp"
@@ -40,7 +39,6 @@
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
 #include "lua/worker_state.hpp"
-#include "source/bytecode.hpp"
 #include "source/carry.hpp"
 #include "source/fingerprint.hpp"
 #include "terminal/progress.hpp"

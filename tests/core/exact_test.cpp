@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "model/closed_form.hpp"
-#include "model/springs/polynomial_spring.hpp"
+#include "model/springs.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/random_case.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/phase_lag.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"

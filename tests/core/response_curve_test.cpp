@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "analysis/response_curve.hpp"
-#include "model/springs/polynomial_spring.hpp"
+#include "model/springs.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"
 #include "support/within.hpp"

@@ -1,10 +1,10 @@
 // What somebody writes who is used to another language, and what is said about it: each row of the tables of
 // habits.cpp.
-#include "errors/habits.hpp"
 
 #include <memory>
 #include <string>
 
+#include "errors/advice.hpp"
 #include "errors/error_remarks.hpp"
 #include "help/library.hpp"
 #include "prompt/call.hpp"

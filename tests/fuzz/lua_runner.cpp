@@ -11,7 +11,6 @@
 
 #include "help/library.hpp"
 #include "lua/interrupt.hpp"
-#include "lua/limits.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/safe_mode.hpp"
 

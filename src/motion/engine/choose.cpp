@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "motion/engine/engine.hpp"
-#include "motion/engine/pace.hpp"
 
 namespace dinal::motion::engine {
 

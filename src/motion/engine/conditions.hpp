@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "motion/engine/chatter.hpp"
-#include "motion/engine/ending.hpp"
 #include "motion/engine/mechanics.hpp"
+#include "motion/engine/segment.hpp"
 #include "motion/engine/signal.hpp"
 #include "motion/engine/slide.hpp"
 #include "motion/engine/torque_sizes.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "motion/engine/engine.hpp"
-#include "motion/roughness.hpp"
+#include "motion/engine/noise.hpp"
 
 namespace dinal::motion::engine {
 

@@ -8,7 +8,7 @@
 #include "motion/engine/conditions.hpp"
 #include "motion/engine/contacts.hpp"
 #include "motion/engine/crossing.hpp"
-#include "motion/engine/ending.hpp"
+#include "motion/engine/segment.hpp"
 #include "motion/engine/torque_sizes.hpp"
 #include "motion/engine/user_events.hpp"
 #include "motion/engine/walls.hpp"

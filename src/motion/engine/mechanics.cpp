@@ -7,7 +7,7 @@
 
 #include "algebra/decompositions.hpp"
 #include "model/functions.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 
 namespace dinal::motion::engine {
 

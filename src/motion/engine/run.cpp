@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 #include "motion/engine/collocation.hpp"
 #include "motion/engine/engine.hpp"
 #include "motion/engine/guards.hpp"

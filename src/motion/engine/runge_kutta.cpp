@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/engine/noise.hpp"
 #include "motion/interpolation.hpp"
-#include "motion/roughness.hpp"
 
 namespace dinal::motion::engine {
 

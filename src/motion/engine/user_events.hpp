@@ -6,7 +6,7 @@
 
 #include "motion/engine/balance.hpp"
 #include "motion/engine/crossing.hpp"
-#include "motion/engine/ending.hpp"
+#include "motion/engine/segment.hpp"
 #include "motion/engine/signal.hpp"
 
 namespace dinal::motion::engine {

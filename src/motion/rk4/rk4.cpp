@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "model/functions.hpp"
-#include "model/springs/user_spring.hpp"
+#include "model/springs.hpp"
 #include "motion/engine/part.hpp"
 #include "motion/rk4/rk4_engine.hpp"
 
