@@ -181,34 +181,32 @@ std::vector<MarkKind> kinds_of(const std::vector<Mark>& marks) {
 
 namespace {
 
-constexpr double closest_turns = 3;  // minimum distance between extremes, in units of the width
-constexpr double turns_to_a_step = 4;
-
-/// The range of visible points of a curve, and the number of its extremes.
+/// The range of visible points of a curve.
 struct Seen {
-    std::size_t first = 0, last = 0, turns = 0;
+    std::size_t first = 0, last = 0;
 };
 
-Seen seen_of(const Curve& curve, Interval window) {
-    const auto x = curve.x.values.first(curve.size()), y = curve.y.values.first(curve.size());
-    Seen seen;
-    seen.first = static_cast<std::size_t>(std::ranges::lower_bound(x, window.low) - x.begin());
-    seen.last = static_cast<std::size_t>(std::ranges::upper_bound(x, window.high) - x.begin());
-    double direction = 0;
-    for (std::size_t i = seen.first + 1; i < seen.last; ++i) {
-        const double change = y[i] - y[i - 1];
-        if (change * direction < 0) ++seen.turns;
-        if (change != 0) direction = change;
-    }
-    return seen;
+Seen seen_in(const Figure& figure, const Curve& curve) {
+    const Interval window = figure.x.limits.value_or(Interval{-infinity, infinity});
+    const auto x = curve.x.values.first(curve.size());
+    return {static_cast<std::size_t>(std::ranges::lower_bound(x, window.low) - x.begin()),
+            static_cast<std::size_t>(std::ranges::upper_bound(x, window.high) - x.begin())};
+}
+
+/// The number of extremes in view; noise on a slow curve does not count if swings must exceed a part of the range.
+std::size_t count_turns(const Curve& curve, const Seen& seen, double part) {
+    if (seen.last <= seen.first) return 0;
+    const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
+    Extent range;
+    for (const double value : y) range.add(value);
+    return turns_of(y, part > 0 ? part * (range.high - range.low) : 0).size() - 2;
 }
 
 /// A band of equal steps with the lowest and highest value in each.
 Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     const auto x = curve.x.values, y = curve.y.values;
     const double from = x[seen.first], length = x[seen.last - 1] - from;
-    constexpr double none = std::numeric_limits<double>::infinity();
-    std::vector<double> middle(steps), low(steps, none), high(steps, -none);
+    std::vector<double> middle(steps), low(steps, infinity), high(steps, -infinity);
     for (std::size_t i = seen.first; i < seen.last; ++i) {
         const auto step =
             std::min(steps - 1, static_cast<std::size_t>((x[i] - from) / length * static_cast<double>(steps)));
@@ -227,32 +225,6 @@ Curve stepped_band(const Curve& curve, const Seen& seen, std::size_t steps) {
     band.y = Numbers::own(std::move(high));
     band.base = Numbers::own(std::move(low));
     return band;
-}
-
-/// The number of extremes with large swings; noise on a slow curve does not count.
-std::size_t large_turns(const Curve& curve, const Seen& seen) {
-    if (seen.last <= seen.first) return 0;
-    const auto y = curve.y.values.subspan(seen.first, seen.last - seen.first);
-    double least = std::numeric_limits<double>::infinity(), greatest = -least;
-    for (const double value : y) {
-        least = std::min(least, value);
-        greatest = std::max(greatest, value);
-    }
-    constexpr double good_part = 0.1;
-    const double smallest = good_part * (greatest - least);
-    std::size_t turns = 0;
-    double low = y.front(), high = y.front();  // since the last turn
-    int direction = 0;
-    for (const double value : y) {
-        low = std::min(low, value);
-        high = std::max(high, value);
-        const bool down = direction >= 0 && value < high - smallest, up = direction <= 0 && value > low + smallest;
-        if (!down && !up) continue;
-        turns += direction != 0 ? 1 : 0;
-        direction = down ? -1 : 1;
-        low = high = value;
-    }
-    return turns;
 }
 
 /// A vertical line in each place from the lowest to the highest value within one turn before and after it.
@@ -284,49 +256,57 @@ Curve envelope(const Curve& curve, const Seen& seen, std::size_t turns, std::siz
     return all;
 }
 
-/// Returns whether the curve can be replaced if too dense: a line over increasing x.
-bool is_line_over_x(const Curve& curve) {
-    const auto x = curve.x.values.first(curve.size());
-    return curve.style == Style::line && std::ranges::is_sorted(x);
-}
-
-Seen seen_in(const Figure& figure, const Curve& curve) {
-    constexpr double anywhere = std::numeric_limits<double>::infinity();
-    return seen_of(curve, figure.x.limits.value_or(Interval{-anywhere, anywhere}));
+/// Calls replace(figure, curve, seen) for each line over increasing x, which may be too dense to be drawn.
+template <class Replace>
+std::vector<Figure> with_dense_lines(std::span<const Figure> figures, const Replace& replace) {
+    std::vector<Figure> all(figures.begin(), figures.end());
+    for (Figure& figure : all) {
+        for (Curve& curve : figure.curves) {
+            const bool over_x = std::ranges::is_sorted(curve.x.values.first(curve.size()));
+            if (curve.style == Style::line && over_x) replace(figure, curve, seen_in(figure, curve));
+        }
+    }
+    return all;
 }
 
 }  // namespace
 
-std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width) {
-    std::vector<Figure> all(figures.begin(), figures.end());
-    for (Figure& figure : all) {
-        for (Curve& curve : figure.curves) {
-            if (!is_line_over_x(curve) || figure.x.logarithmic) continue;
-            constexpr double closest = 2.5;  // distance between extremes, in units of the width
-            const Seen seen = seen_in(figure, curve);
-            const std::size_t turns = large_turns(curve, seen);
-            if (static_cast<double>(turns) * closest > width) {
-                curve = envelope(curve, seen, turns, static_cast<std::size_t>(width));
-            }
-        }
+std::vector<std::size_t> turns_of(std::span<const double> y, double smallest) {
+    std::vector<std::size_t> turns{0};
+    std::size_t low = 0, high = 0;  // since the last turn
+    int direction = 0;
+    for (std::size_t i = 0; i < y.size(); ++i) {
+        low = y[i] < y[low] ? i : low;
+        high = y[i] > y[high] ? i : high;
+        const bool down = direction >= 0 && y[i] < y[high] - smallest, up = direction <= 0 && y[i] > y[low] + smallest;
+        if (!down && !up) continue;
+        if (direction != 0) turns.push_back(down ? high : low);
+        direction = down ? -1 : 1;
+        low = high = i;
     }
-    return all;
+    turns.push_back(y.size() - 1);
+    return turns;
+}
+
+std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width) {
+    return with_dense_lines(figures, [width](const Figure& figure, Curve& curve, const Seen& seen) {
+        constexpr double closest = 2.5;  // distance between extremes, in units of the width
+        constexpr double good_part = 0.1;
+        const std::size_t turns = figure.x.logarithmic ? 0 : count_turns(curve, seen, good_part);
+        if (static_cast<double>(turns) * closest > width) {
+            curve = envelope(curve, seen, turns, static_cast<std::size_t>(width));
+        }
+    });
 }
 
 std::vector<Figure> with_bands(std::span<const Figure> figures, double width) {
-    std::vector<Figure> all(figures.begin(), figures.end());
-    for (Figure& figure : all) {
-        for (Curve& curve : figure.curves) {
-            if (!curve.behind || !is_line_over_x(curve)) continue;
-            const Seen seen = seen_in(figure, curve);
-            const auto turns = static_cast<double>(seen.turns);
-            if (turns * closest_turns > width) {
-                const double steps = std::clamp(turns / turns_to_a_step, 2.0, width);
-                curve = stepped_band(curve, seen, static_cast<std::size_t>(steps));
-            }
-        }
-    }
-    return all;
+    return with_dense_lines(figures, [width](const Figure& /*figure*/, Curve& curve, const Seen& seen) {
+        constexpr double closest = 3, turns_to_a_step = 4;  // distance between extremes, in units of the width
+        const auto turns = static_cast<double>(curve.behind ? count_turns(curve, seen, 0) : 0);
+        if (turns * closest <= width) return;
+        const double steps = std::clamp(turns / turns_to_a_step, 2.0, width);
+        curve = stepped_band(curve, seen, static_cast<std::size_t>(steps));
+    });
 }
 
 std::vector<std::size_t> drawing_order(const Figure& figure) {

@@ -173,6 +173,9 @@ std::vector<Figure> with_bands(std::span<const Figure> figures, double width);
 /// noise.
 std::vector<Figure> with_envelopes(std::span<const Figure> figures, double width);
 
+/// The indices of the extremes of a curve and of both ends; movements up to `smallest` do not count.
+std::vector<std::size_t> turns_of(std::span<const double> y, double smallest);
+
 /// The indices of the curves, background curves first.
 std::vector<std::size_t> drawing_order(const Figure& figure);
 

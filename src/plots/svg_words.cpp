@@ -40,30 +40,11 @@ std::string what_over_what(const Figure& figure) {
 
 // ---- description of a curve
 
-/// The extremes of a curve over x, including both ends; ignores movements below `smallest`.
-std::vector<Point> turns_of(const std::vector<Point>& points, double smallest) {
-    std::vector<Point> turns{points.front()};
-    Point extreme = points.front();
-    double direction = 0;
-    for (const Point& point : points) {
-        if (direction == 0 && std::fabs(point.y - extreme.y) > smallest) direction = point.y > extreme.y ? 1 : -1;
-        if ((point.y - extreme.y) * direction > 0) {
-            extreme = point;
-        } else if ((extreme.y - point.y) * direction > smallest) {
-            turns.push_back(extreme);
-            extreme = point;
-            direction = -direction;
-        }
-    }
-    turns.push_back(points.back());
-    return turns;
-}
-
 /// Describes the swings between these extremes, without the half swings at both ends.
-std::string swings_text(const std::vector<Point>& turns) {
+std::string swings_text(const std::vector<double>& turns) {
     constexpr std::size_t fewest = 5;
     if (turns.size() < fewest) return "";
-    const auto swing = [&turns](std::size_t i) { return std::fabs(turns[i + 1].y - turns[i].y); };
+    const auto swing = [&turns](std::size_t i) { return std::fabs(turns[i + 1] - turns[i]); };
     const double first = swing(1), last = swing(turns.size() - 3);
     double largest = 0;
     for (std::size_t i = 1; i + 2 < turns.size(); ++i) largest = std::max(largest, swing(i));
@@ -80,7 +61,9 @@ std::string course_over_x(const std::vector<Point>& points) {
     const double from = points.front().y, to = points.back().y;
     if (low->y == high->y) return fmt::format("constant at {:.4g}", from);
     constexpr double visible = 0.01;  // fraction of the height
-    const std::vector<Point> turns = turns_of(points, visible * (high->y - low->y));
+    std::vector<double> up, turns;
+    for (const Point& point : points) up.push_back(point.y);
+    for (const std::size_t i : turns_of(up, visible * (high->y - low->y))) turns.push_back(up[i]);
     if (turns.size() == 2) return fmt::format("{} from {:.4g} to {:.4g}", to > from ? "rises" : "falls", from, to);
     return fmt::format("from {:.4g} to {:.4g}, greatest {:.4g} at {:.4g}, least {:.4g} at {:.4g}{}", from, to, high->y,
                        high->x, low->y, low->x, swings_text(turns));
