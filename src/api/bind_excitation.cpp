@@ -450,7 +450,7 @@ constexpr lua::Member excitation_members[] = {
       "print((excitation.step{} / 4)(1))  --> 0.25"}},
     {lua::a_metamethod<negate>("__unm"),
      {"-e -> excitation", "The excitation with the other sign.", "print((-excitation.step{})(1))  --> -1.0"}},
-    {lua::a_text<model::Excitation, [](lua_State* L, const model::Excitation& e) { return source::describe(L, e); }>,
+    {lua::a_text<model::Excitation, [](lua_State* L, const model::Excitation& e) { return source::lua_text(L, e); }>,
      {"tostring(e) -> string",
       "Lua text that recreates it, if possible: functions by their source text, without the values of upvalues; "
       "long tables are left out.",

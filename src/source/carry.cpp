@@ -13,6 +13,7 @@
 #include "model/controller.hpp"
 #include "model/functions.hpp"
 #include "motion/integrators.hpp"
+#include "source/describe.hpp"
 #include "source/fingerprint.hpp"
 
 namespace dinal::source {
@@ -331,16 +332,12 @@ bool Carrier::object(int index) {
             return user_function(own);
         }
     };
-    const auto copied = [&](const auto* own) {
-        if (own == nullptr) return false;
-        auto copy = model::with_functions(*own, part);
+    const auto copied = [&](const auto& own) {
+        auto copy = model::with_functions(own, part);
         if (!error_) lua::push(to_, std::move(copy));
-        return true;
     };
-    const bool known =
-        shared(lua::test<lua::Vector>(from_, index)) || shared(lua::test<motion::Integrator>(from_, index)) ||
-        copied(lua::test<model::Friction>(from_, index)) || copied(lua::test<model::Spring>(from_, index)) ||
-        copied(lua::test<model::SystemHandle>(from_, index)) || copied(lua::test<model::Excitation>(from_, index));
+    const bool known = shared(lua::test<lua::Vector>(from_, index)) ||
+                       shared(lua::test<motion::Integrator>(from_, index)) || visit_object(from_, index, copied);
     if (error_) return false;
     if (!known && !other_objects_(from_, index, to_)) {
         const lua::Documented found = lua::documented(from_, index);

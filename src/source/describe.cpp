@@ -57,7 +57,7 @@ struct OptionTexts {
     }
     void operator()(const char* name, double x) { add(name, text::number_literal(x)); }
     void operator()(const char* name, bool /*yes*/) { add(name, "true"); }
-    void operator()(const char* name, const model::Excitation& value) { add(name, describe(L, value, whole)); }
+    void operator()(const char* name, const model::Excitation& value) { add(name, lua_text(L, value, whole)); }
     void operator()(const char* name, const model::UserFunction& value) { add(name, function_text(L, value, whole)); }
     void operator()(const char* name, const model::Friction& value) { add(name, lua_text(L, value, whole)); }
     void operator()(const char* name, const model::Spring& value) { add(name, lua_text(L, value, whole)); }
@@ -223,7 +223,7 @@ const lua::LuaFunction* function_alone(const model::Excitation& excitation) {
     return plain ? dynamic_cast<const lua::LuaFunction*>(scripted->function.get()) : nullptr;
 }
 
-std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
+std::string lua_text(lua_State* L, const model::Excitation& excitation, ValueText* whole) {
     const Context context{L, whole};
     std::string text;
     for (const model::Component& c : excitation.components()) {
@@ -335,10 +335,8 @@ std::string ValueText::object(int index) {
         }
         return "vector{ " + text + " }";
     }
-    const auto text = [this](const auto* own) { return own != nullptr ? lua_text(L_, *own, this) : ""; };
-    std::string own = text(lua::test<model::Friction>(L_, index)) + text(lua::test<model::Spring>(L_, index));
-    if (const auto* rig = lua::test<model::SystemHandle>(L_, index)) own = lua_text(L_, **rig, this);
-    if (const auto* excitation = lua::test<model::Excitation>(L_, index)) own = describe(L_, *excitation, this);
+    std::string own;
+    visit_object(L_, index, [&](const auto& object) { own = lua_text(L_, object, this); });
     if (const auto* method = lua::test<motion::Integrator>(L_, index)) own = lua_text(*method);
     if (!own.empty()) return own;
     if (aside_ && lua::documented(L_, index).owner != nullptr) own = aside_(index);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "lua/bind.hpp"
 #include "lua/lua_headers.hpp"
 #include "lua/lua_text.hpp"
 #include "model/excitation.hpp"
@@ -69,11 +70,26 @@ const lua::LuaFunction* function_alone(const model::Excitation& excitation);
 /// Lua text that constructs the excitation: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". A comment
 /// replaces parts that cannot be written (a long table, a function without source). `whole` includes the upvalues of
 /// functions, and complete tables.
-std::string describe(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
+std::string lua_text(lua_State* L, const model::Excitation& excitation, ValueText* whole = nullptr);
 
 /// "system{ I = 1, k = 39.5, C = 1.5, Rd = 2, Re = 3 }" or "system{ bodies = { a = { I = 1, k = 4 } } }" constructs the
 /// system; options that are 0 are omitted. With `whole`, the functions of friction laws include their upvalues.
 std::string lua_text(lua_State* L, const model::System& system, ValueText* whole = nullptr);
+inline std::string lua_text(lua_State* L, const model::SystemHandle& system, ValueText* whole = nullptr) {
+    return lua_text(L, *system, whole);
+}
+
+/// Calls visit(object) if the value at `index` is an excitation, a system, a law of friction or a spring; returns
+/// whether it is.
+template <class Visit>
+bool visit_object(lua_State* L, int index, const Visit& visit) {
+    const auto visited = [&visit](const auto* own) {
+        if (own != nullptr) visit(*own);
+        return own != nullptr;
+    };
+    return visited(lua::test<model::Excitation>(L, index)) || visited(lua::test<model::SystemHandle>(L, index)) ||
+           visited(lua::test<model::Friction>(L, index)) || visited(lua::test<model::Spring>(L, index));
+}
 
 /// "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }".
 std::string lua_text(lua_State* L, const model::Friction& law, ValueText* whole = nullptr);

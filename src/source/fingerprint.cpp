@@ -307,19 +307,12 @@ void Fingerprint::object(int index) {
         }
         return own;
     };
-    const auto written = [&](const std::string& text, const auto& own) {
-        add(text);
+    const auto written = [&](const auto& own) {
+        add(lua_text(L_, own, &no_functions));
         static_cast<void>(model::with_functions(own, part));
     };
-    if (const auto* own = lua::test<model::Excitation>(L_, index)) {
-        written(describe(L_, *own, &no_functions), *own);
-    } else if (const auto* system = lua::test<model::SystemHandle>(L_, index)) {
-        written(lua_text(L_, **system, &no_functions), *system);
-    } else if (const auto* law = lua::test<model::Friction>(L_, index)) {
-        written(lua_text(L_, *law, &no_functions), *law);
-    } else if (const auto* spring = lua::test<model::Spring>(L_, index)) {
-        written(lua_text(L_, *spring, &no_functions), *spring);
-    } else if (!other_objects_(L_, index, *this) && lua::documented(L_, index).owner != nullptr) {
+    if (!visit_object(L_, index, written) && !other_objects_(L_, index, *this) &&
+        lua::documented(L_, index).owner != nullptr) {
         add(printed(index));
     }
 }

@@ -23,7 +23,7 @@ void append_lines(std::vector<std::string>& lines, std::string_view text) {
 /// The text of an excitation; if it is only a function, the author's text.
 std::string excitation_text(lua_State* L, const model::Excitation& excitation, ValueText& writer) {
     const lua::LuaFunction* function = function_alone(excitation);
-    if (function == nullptr) return describe(L, excitation, &writer);
+    if (function == nullptr) return lua_text(L, excitation, &writer);
     function->push(L);
     std::string text = writer.expression(-1);
     lua_pop(L, 1);
