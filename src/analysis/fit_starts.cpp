@@ -127,24 +127,22 @@ double MeasuredAngles::highest_omega0() const {
 
 Parameters FitStarts::completed(double omega0, double zeta, double dry, double zero) const {
     Parameters p{};
-    at(p, Unknown::I) = question_.given_or(Unknown::I, question_.gives(Unknown::k) && omega0 > 0
-                                                           ? question_.given_or(Unknown::k, 1) / (omega0 * omega0)
-                                                           : 1);
-    at(p, Unknown::k) = question_.given_or(Unknown::k, at(p, Unknown::I) * omega0 * omega0);
-    at(p, Unknown::C) = question_.given_or(Unknown::C, 2 * zeta * std::sqrt(at(p, Unknown::I) * at(p, Unknown::k)));
-    at(p, Unknown::Rd) = question_.given_or(Unknown::Rd, dry * at(p, Unknown::k));
-    at(p, Unknown::Re) = question_.given_or(Unknown::Re, at(p, Unknown::Rd));
-    at(p, Unknown::offset) = question_.given_or(Unknown::offset, zero);
+    p.I = question_.given.I.value_or(question_.given.k && omega0 > 0 ? question_.given.k.value_or(1) / (omega0 * omega0)
+                                                                     : 1);
+    p.k = question_.given.k.value_or(p.I * omega0 * omega0);
+    p.C = question_.given.C.value_or(2 * zeta * std::sqrt(p.I * p.k));
+    p.Rd = question_.given.Rd.value_or(dry * p.k);
+    p.Re = question_.given.Re.value_or(p.Rd);
+    p.offset = question_.given.offset.value_or(zero);
     const double a_while = 0.15 / omega0;  // the motion is nearly straight for this time
     const auto bent = std::ranges::upper_bound(question_.t, question_.t.front() + a_while);
     const Tangent tangent =
         first_tangent(question_.t, question_.theta, static_cast<std::size_t>(bent - question_.t.begin()) + 2);
-    at(p, Unknown::theta0) = question_.given_or(Unknown::theta0, tangent.value - at(p, Unknown::offset));
+    p.theta0 = question_.given.theta0.value_or(tangent.value - p.offset);
     // A slope within the noise counts as 0, as most masses start at rest.
     const double samples = static_cast<double>(bent - question_.t.begin()) + 2;
     const double unsure = 3 * record_.noise * std::sqrt(12 / samples) / a_while;
-    at(p, Unknown::velocity0) =
-        question_.given_or(Unknown::velocity0, std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
+    p.velocity0 = question_.given.velocity0.value_or(std::fabs(tangent.slope) < unsure ? 0 : tangent.slope);
     return p;
 }
 
@@ -201,10 +199,10 @@ std::vector<Parameters> FitStarts::forced() const {
     for (const double factor : {1.0, 1.3, 0.7, 2.0}) {
         for (const double breakaway : {1.05, 1.4}) {
             Parameters p = weak;
-            if (!question_.gives(Unknown::Rd)) at(p, Unknown::Rd) *= factor;
-            if (!question_.gives(Unknown::Re)) at(p, Unknown::Re) = breakaway * at(p, Unknown::Rd);
+            if (!question_.given.Rd) p.Rd *= factor;
+            if (!question_.given.Re) p.Re = breakaway * p.Rd;
             starts.push_back(p);
-            if (question_.gives(Unknown::Re)) break;
+            if (question_.given.Re) break;
         }
     }
     return starts;
@@ -232,12 +230,12 @@ Parameters FitStarts::weak_form() const {
     const std::array<Unknown, 4> order{Unknown::I, Unknown::k, Unknown::C, Unknown::Rd};
     std::vector<std::size_t> columns;
     for (std::size_t c = 0; c < 5; ++c) {
-        const bool known = c < 4 ? question_.gives(order[c]) : at(question_.given, Unknown::offset) == 0.0;
+        const bool known = c < 4 ? question_.gives(order[c]) : question_.given.offset == 0.0;
         if (!known) columns.push_back(c);
     }
     const auto n = static_cast<Eigen::Index>(rows.size()), m = static_cast<Eigen::Index>(columns.size());
     std::array<double, 5> x{};
-    for (std::size_t c = 0; c < 4; ++c) x[c] = question_.given_or(order[c], 0);
+    for (std::size_t c = 0; c < 4; ++c) x[c] = at(question_.given, order[c]).value_or(0);
     if (n >= m && m > 0) {
         Eigen::MatrixXd A(n, m);
         Eigen::VectorXd b(n);
@@ -262,18 +260,17 @@ Parameters FitStarts::weak_form() const {
     if (!(x[1] > 0)) x[1] = x[0] > 0 ? x[0] * omega * omega : 2 * most / record_.range;
     if (!(x[0] > 0)) x[0] = x[1] / (omega * omega);
     if (x[1] > x[0] * record_.highest_omega0() * record_.highest_omega0()) {
-        (question_.gives(Unknown::I) ? x[1] : x[0]) =
-            question_.gives(Unknown::I) ? x[0] * omega * omega : x[1] / (omega * omega);
+        (question_.given.I ? x[1] : x[0]) = question_.given.I ? x[0] * omega * omega : x[1] / (omega * omega);
     }
     x[2] = std::max(x[2], 0.0);
-    x[3] = x[3] > 0 ? x[3] : question_.gives(Unknown::Rd) ? question_.given_or(Unknown::Rd, 0) : 0.05 * most;
+    x[3] = x[3] > 0 ? x[3] : question_.given.Rd.value_or(0.05 * most);
     const double omega0 = std::sqrt(x[1] / x[0]);
     Parameters p = completed(omega0, 0, 0, x[4] / x[1]);
-    at(p, Unknown::I) = x[0];
-    at(p, Unknown::k) = x[1];
-    at(p, Unknown::C) = x[2];
-    at(p, Unknown::Rd) = x[3];
-    at(p, Unknown::Re) = question_.given_or(Unknown::Re, x[3]);
+    p.I = x[0];
+    p.k = x[1];
+    p.C = x[2];
+    p.Rd = x[3];
+    p.Re = question_.given.Re.value_or(x[3]);
     return p;
 }
 

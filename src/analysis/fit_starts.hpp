@@ -36,7 +36,7 @@ struct Tangent {
 Tangent first_tangent(std::span<const double> t, std::span<const double> theta, std::size_t count);
 
 /// A value for each unknown, fitted or given.
-using Parameters = std::array<double, unknown_count>;
+using Parameters = OfEach<double>;
 
 /// The measured angles, with properties that need no model.
 struct MeasuredAngles {

@@ -21,15 +21,12 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr std::array<Unknown, unknown_count> all_unknowns{
-    Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
-
 /// Returns whether the parameter is fitted. A free decay does not determine I, which sets the unit of torque, nor Re,
 /// which acts only at the final rest.
 bool is_sought(const IdentifyQuestion& question, Unknown which) {
     if (question.gives(which)) return false;
     if (question.M) return true;
-    return which != Unknown::Re && (which != Unknown::I || question.gives(Unknown::k));
+    return which != Unknown::Re && (which != Unknown::I || question.given.k);
 }
 
 /// Two fits count as one if their sums of squares differ by no more than this part.
@@ -57,13 +54,13 @@ struct Rest {
 };
 
 double omega0_of(const Parameters& p) {
-    return std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
+    return std::sqrt(p.k / p.I);
 }
 double zeta_of(const Parameters& p) {
-    return at(p, Unknown::C) / (2 * std::sqrt(at(p, Unknown::I) * at(p, Unknown::k)));
+    return p.C / (2 * std::sqrt(p.I * p.k));
 }
 double dry_of(const Parameters& p) {
-    return at(p, Unknown::Rd) / at(p, Unknown::k);
+    return p.Rd / p.k;
 }
 
 /// The parameters of the half-cycle map of a decay; empty if the system does not oscillate.
@@ -81,14 +78,12 @@ struct Decay {
 };
 
 std::optional<Decay> decay_of(const Parameters& p) {
-    const auto system = model::Oscillator::make({.inertia = at(p, Unknown::I),
-                                                 .stiffness = at(p, Unknown::k),
-                                                 .damping = at(p, Unknown::C),
-                                                 .kinetic_friction = at(p, Unknown::Rd)});
+    const auto system =
+        model::Oscillator::make({.inertia = p.I, .stiffness = p.k, .damping = p.C, .kinetic_friction = p.Rd});
     constexpr double most_damping = 0.99;
     if (!system || system->damping_ratio() > most_damping) return {};
-    const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
-    return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), at(p, Unknown::Rd) / at(p, Unknown::k)};
+    const theory::FreeMotion motion(*system, {p.theta0, p.velocity0});
+    return Decay{motion.extreme(0), motion.extremes(), system->damping_ratio(), p.Rd / p.k};
 }
 
 /// Fits from several starts and keeps the best result.
@@ -132,14 +127,14 @@ private:
     Parameters filled(const Eigen::VectorXd& p) const {
         Parameters all = base_;
         for (std::size_t i = 0; i < unknowns_.size(); ++i) at(all, unknowns_[i]) = p[static_cast<Eigen::Index>(i)];
-        if (seeks_Re_) at(all, Unknown::Re) += at(all, Unknown::Rd);
+        if (seeks_Re_) all.Re += all.Rd;
         return all;
     }
     /// Extracts the fitted parameters. Re is fitted as Re - Rd, because values below Rd have no effect.
     Eigen::VectorXd fitted_of(const Parameters& all) const {
         Eigen::VectorXd p(count());
         for (std::size_t i = 0; i < unknowns_.size(); ++i) p[static_cast<Eigen::Index>(i)] = at(all, unknowns_[i]);
-        if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, at(all, Unknown::Re) - at(all, Unknown::Rd));
+        if (seeks_Re_) p[place_of(Unknown::Re)] = std::max(0.0, all.Re - all.Rd);
         return p;
     }
     Eigen::Index place_of(Unknown which) const { return std::ranges::find(unknowns_, which) - unknowns_.begin(); }
@@ -150,9 +145,8 @@ private:
         const double highest = record_.highest_omega0();
         constexpr double most = 10;  // ranges of the record between two samples
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
-        return (!seeks_omega0 || at(p, Unknown::k) <= highest * highest * at(p, Unknown::I)) &&
-               (question_.gives(Unknown::velocity0) ||
-                std::fabs(at(p, Unknown::velocity0)) <= most * record_.range * highest);
+        return (!seeks_omega0 || p.k <= highest * highest * p.I) &&
+               (question_.given.velocity0 || std::fabs(p.velocity0) <= most * record_.range * highest);
     }
 
     /// The motion with these parameters, clipped like the record.
@@ -169,7 +163,7 @@ private:
         ++runs_;
         const auto system = system_of(p);
         if (!system || !is_seen(p)) return {};
-        const model::State initial{at(p, Unknown::theta0), at(p, Unknown::velocity0)};
+        const model::State initial{p.theta0, p.velocity0};
         if (!question_.M) {
             stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
             if (stopped_) return {};
@@ -178,12 +172,12 @@ private:
             if (rests_at && *rests_at < 0) return {};
             Eigen::VectorXd theta(static_cast<Eigen::Index>(rows));
             theory::free_decay(*system, initial, std::span(question_.t).first(rows), rests_at, {theta.data(), rows});
-            theta.array() += at(p, Unknown::offset);
+            theta.array() += p.offset;
             return theta.allFinite() ? std::optional(std::move(theta)) : std::nullopt;
         }
         const auto run = driven(*system, *question_.M, initial, rows);
         if (!run) return {};
-        return Eigen::VectorXd(run->column(motion::Column::theta).array() + at(p, Unknown::offset));
+        return Eigen::VectorXd(run->column(motion::Column::theta).array() + p.offset);
     }
 
     /// A run with a row at each of the first `rows` samples; empty if it ends early.
@@ -204,14 +198,13 @@ private:
 
     std::optional<model::Oscillator> system_of(const Parameters& p) const {
         model::OscillatorParameters parts;
-        parts.inertia = at(p, Unknown::I);
-        parts.stiffness = at(p, Unknown::k);
-        parts.damping = at(p, Unknown::C);
-        parts.kinetic_friction = at(p, Unknown::Rd);
-        const bool own_breakaway = question_.gives(Unknown::Re) || question_.M || breakaway_ > 0;
+        parts.inertia = p.I;
+        parts.stiffness = p.k;
+        parts.damping = p.C;
+        parts.kinetic_friction = p.Rd;
+        const bool own_breakaway = question_.given.Re || question_.M || breakaway_ > 0;
         if (own_breakaway) {
-            const double Re =
-                question_.M || question_.gives(Unknown::Re) ? at(p, Unknown::Re) : breakaway_ * parts.stiffness;
+            const double Re = question_.M || question_.given.Re ? p.Re : breakaway_ * parts.stiffness;
             parts.breakaway = std::max(Re, parts.kinetic_friction);
         }
         const auto system = model::Oscillator::make(parts);
@@ -221,13 +214,13 @@ private:
     FitScale scale_of(const Parameters& start) const {
         FitScale scale{Eigen::VectorXd(count()), Eigen::VectorXd::Constant(count(), -1e300), Eigen::VectorXd(count()),
                        Eigen::VectorXd::Zero(count())};
-        const double k = at(start, Unknown::k), omega = std::sqrt(k / at(start, Unknown::I));
+        const double k = start.k, omega = std::sqrt(k / start.I);
         constexpr double loose_factor = 3;
         for (Eigen::Index i = 0; i < count(); ++i) {
             const Unknown which = unknowns_[static_cast<std::size_t>(i)];
             switch (which) {
                 case Unknown::I:
-                    scale.typical[i] = scale.least[i] = 1e-6 * at(start, Unknown::I);
+                    scale.typical[i] = scale.least[i] = 1e-6 * start.I;
                     scale.whole[i] = at(start, which);
                     break;
                 case Unknown::k:
@@ -264,7 +257,7 @@ private:
     void try_from(const Parameters& start) {
         base_ = start;
         Eigen::VectorXd p = fitted_of(start);
-        const double period = 2 * std::numbers::pi * std::sqrt(at(start, Unknown::I) / at(start, Unknown::k));
+        const double period = 2 * std::numbers::pi * std::sqrt(start.I / start.k);
         const FitScale scale = scale_of(start);
         const std::size_t least = unknowns_.size() + 4;
         std::size_t done = least;
@@ -283,12 +276,12 @@ private:
 
     /// Also searches from initial velocity 0, because a search may end at a velocity that decays between two samples.
     void try_let_go(const std::vector<Parameters>& starts) {
-        if (question_.gives(Unknown::velocity0)) return;
+        if (question_.given.velocity0) return;
         const Eigen::Index place = place_of(Unknown::velocity0);
         for (const Parameters& start : starts) {
             if (stopped_ || !((question_.M && &start == starts.data()) || leaves_pattern(suspected))) return;
             base_ = start;
-            at(base_, Unknown::velocity0) = 0;
+            base_.velocity0 = 0;
             const FitScale scale = scale_of(base_);
             FitScale held = scale;
             held.hold[place] = firm_weight * record_.range / scale.typical[place];
@@ -378,15 +371,13 @@ private:
     }
 
     void number_turns(const Parameters& p) {
-        const double swift = at(p, Unknown::velocity0) * std::sqrt(at(p, Unknown::I) / at(p, Unknown::k));
-        starts_at_turn_ = std::fabs(swift) < std::fabs(at(p, Unknown::theta0));
+        const double swift = p.velocity0 * std::sqrt(p.I / p.k);
+        starts_at_turn_ = std::fabs(swift) < std::fabs(p.theta0);
     }
 
     /// A turn near the start has number 0, whether it comes just after or just before it. So the numbers do not change
     /// if the fitted initial velocity, nearly 0, changes its sign.
-    double turns_before(const Parameters& p) const {
-        return starts_at_turn_ && at(p, Unknown::theta0) * at(p, Unknown::velocity0) < 0 ? 1 : 0;
-    }
+    double turns_before(const Parameters& p) const { return starts_at_turn_ && p.theta0 * p.velocity0 < 0 ? 1 : 0; }
 
     /// Fits with the mass resting at this turn, or never if it is infinite; if `goes_on`, starts from the best fit as
     /// well. If no friction permits such a rest, continues the fit without it. Returns the sum of squares, or infinity.
@@ -430,12 +421,12 @@ private:
         if (!decay) return {};
         const double whole = std::fabs(decay->first.theta), least = 0.05 * whole, most = 0.95 * whole;
         const double lost = std::clamp(whole - decay->size_at(1), least, most);
-        const double omega0 = std::sqrt(at(best, Unknown::k) / at(best, Unknown::I));
+        const double omega0 = std::sqrt(best.k / best.I);
         std::vector<Parameters> starts;
         for (const double dry : {0.2, 0.5, 0.8}) {
             const double q = 1 - (1 - dry) * lost / whole, ratio = -std::log(q) / std::numbers::pi;
-            starts.push_back(starts_.completed(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q),
-                                               at(best, Unknown::offset)));
+            starts.push_back(
+                starts_.completed(omega0, ratio / std::hypot(1, ratio), dry * lost / (1 + q), best.offset));
         }
         return starts;
     }
@@ -448,8 +439,8 @@ private:
         const double here = std::fabs(decay->size_at(turn)), least = std::max(decay->shift, here);
         const double most = turn > 0 ? decay->size_at(turn - 1) : 3 * least;
         if (!(least < most)) return {};
-        if (question_.gives(Unknown::Re)) {
-            const double holds = std::max(at(p, Unknown::Re) / at(p, Unknown::k), decay->shift);
+        if (question_.given.Re) {
+            const double holds = std::max(p.Re / p.k, decay->shift);
             return holds >= here && holds < most ? std::optional(0.0) : std::nullopt;
         }
         return here <= decay->shift ? 0 : (least + most) / 2;
@@ -510,7 +501,7 @@ private:
             for (Eigen::Index i = 0; i < size; ++i) at(p, first[static_cast<std::size_t>(i)]) = q[i];
             return p;
         };
-        const double half = std::numbers::pi * std::sqrt(at(best, Unknown::I) / at(best, Unknown::k));
+        const double half = std::numbers::pi * std::sqrt(best.I / best.k);
         const auto until = std::ranges::upper_bound(question_.t, question_.t.front() + half);
         constexpr std::ptrdiff_t least_rows = 8;
         const auto rows = static_cast<std::size_t>(std::max(until - question_.t.begin(), least_rows));
@@ -542,24 +533,24 @@ private:
     /// from the two best. Returns whether the fit has improved.
     [[nodiscard]] bool try_other_breakaways() {
         const Parameters best = filled_best();
-        const double before = best_->sum, Rd = at(best, Unknown::Rd);
-        const double whole = std::max(4 * Rd, 0.5 * at(best, Unknown::k) * record_.range);
+        const double before = best_->sum, Rd = best.Rd;
+        const double whole = std::max(4 * Rd, 0.5 * best.k * record_.range);
         std::vector<std::pair<double, double>> sums;
         constexpr int looks = 24;
         for (int i = 0; i <= looks && !stopped_; ++i) {
             Parameters p = best;
             const double part = static_cast<double>(i) / looks;
-            at(p, Unknown::Re) = Rd + whole * part * part;
+            p.Re = Rd + whole * part * part;
             const auto theta = predicted(p, question_.t.size());
             if (!theta) continue;
-            sums.emplace_back((record_.theta - *theta).squaredNorm(), at(p, Unknown::Re));
+            sums.emplace_back((record_.theta - *theta).squaredNorm(), p.Re);
             seen_.emplace_back(sums.back().first, p);
         }
         std::ranges::sort(sums);
         constexpr std::size_t tries = 2;
         for (std::size_t i = 0; i < std::min(tries, sums.size()) && !stopped_; ++i) {
             Parameters p = best;
-            at(p, Unknown::Re) = sums[i].second;
+            p.Re = sums[i].second;
             base_ = p;
             const FitScale scale = scale_of(p);
             keep_if_better(fit(fitted_of(p), question_.t.size(), scale, 30), scale);
@@ -600,23 +591,22 @@ private:
         std::vector<std::pair<double, Parameters>> looks;
         const std::size_t rows = question_.t.size();
         for (const Parameters& from : {filled_best(), starts_.weak_form()}) {
-            const double I = at(from, Unknown::I), k = at(from, Unknown::k);
+            const double I = from.I, k = from.k;
             for (const double faster : {0.6, 0.8, 1.0, 1.25, 1.6}) {
                 Parameters p = from;
-                if (!question_.gives(Unknown::I)) at(p, Unknown::I) = I / (faster * faster);
-                if (question_.gives(Unknown::I) && !question_.gives(Unknown::k))
-                    at(p, Unknown::k) = k * faster * faster;
-                const double omega0 = std::sqrt(at(p, Unknown::k) / at(p, Unknown::I));
+                if (!question_.given.I) p.I = I / (faster * faster);
+                if (question_.given.I && !question_.given.k) p.k = k * faster * faster;
+                const double omega0 = std::sqrt(p.k / p.I);
                 const double speed =
                     record_.range * omega0 * std::numbers::pi / 8;  // mean speed of a swing over half the range
                 const double least = 0.02 * k * record_.range, most = k * record_.range;
-                const double lost = std::clamp(at(from, Unknown::C) * speed + at(from, Unknown::Rd), least, most);
+                const double lost = std::clamp(from.C * speed + from.Rd, least, most);
                 for (const double more : {0.5, 1.0, 2.0}) {
                     for (const double dry : {0.05, 0.35, 0.65, 0.95}) {
                         for (const double breakaway : {1.05, 1.4}) {
-                            at(p, Unknown::Rd) = question_.given_or(Unknown::Rd, dry * more * lost);
-                            at(p, Unknown::C) = question_.given_or(Unknown::C, (1 - dry) * more * lost / speed);
-                            at(p, Unknown::Re) = question_.given_or(Unknown::Re, breakaway * at(p, Unknown::Rd));
+                            p.Rd = question_.given.Rd.value_or(dry * more * lost);
+                            p.C = question_.given.C.value_or((1 - dry) * more * lost / speed);
+                            p.Re = question_.given.Re.value_or(breakaway * p.Rd);
                             const auto theta = stopped_ ? std::nullopt : predicted(p, rows);
                             if (theta) looks.emplace_back((record_.theta - *theta).squaredNorm(), p);
                         }
@@ -661,7 +651,7 @@ private:
         best_ = without;
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
         at(tells_nothing_, which) = is_flat;
-        if (is_flat && which == Unknown::velocity0 && !question_.gives(Unknown::theta0)) see_short_beginnings();
+        if (is_flat && which == Unknown::velocity0 && !question_.given.theta0) see_short_beginnings();
     }
 
     /// Varies the initial velocity of a mass that stops before there are many samples; the fitted initial angles show
@@ -673,19 +663,19 @@ private:
         FitScale of_angle{Eigen::VectorXd::Constant(1, scale.typical[place_of(Unknown::theta0)]),
                           Eigen::VectorXd::Constant(1, -1e300), Eigen::VectorXd(1), Eigen::VectorXd::Zero(1)};
         for (const double side : {1.0, -1.0}) {
-            double angle = at(best, Unknown::theta0);
+            double angle = best.theta0;
             for (const double part : {0.02, 0.04, 0.06, 0.09, 0.13, 0.2}) {
                 Parameters p = best;
-                at(p, Unknown::velocity0) = side * part * whole;
+                p.velocity0 = side * part * whole;
                 const Prediction model = [&](const Eigen::VectorXd& q) {
-                    at(p, Unknown::theta0) = q[0];
+                    p.theta0 = q[0];
                     return predicted(p, question_.t.size());
                 };
                 constexpr int steps = 4;
                 const auto found =
                     least_squares(model, record_.theta, Eigen::VectorXd::Constant(1, angle), of_angle, steps);
                 if (!found) break;
-                at(p, Unknown::theta0) = angle = found->parameters[0];
+                p.theta0 = angle = found->parameters[0];
                 seen_.emplace_back(found->sum, p);
                 constexpr double possible = 16;
                 if (found->sum > best_->sum + possible * deviation() * deviation()) break;
@@ -725,7 +715,7 @@ private:
     std::optional<double> resting_turn(const Parameters& p, double noise) const {
         const auto system = question_.M ? std::nullopt : system_of(p);
         if (!system || !theory::Modes(system->damping_ratio()).swings()) return {};
-        const theory::FreeMotion motion(*system, {at(p, Unknown::theta0), at(p, Unknown::velocity0)});
+        const theory::FreeMotion motion(*system, {p.theta0, p.velocity0});
         constexpr double unseen = 0.01;
         const double shift = system->kinetic_friction() / system->stiffness();
         const double last = theory::HalfCycles(system->damping_ratio(), shift)
@@ -808,8 +798,7 @@ private:
                 ++runs_;
                 const auto other = driven(system, M + added, initial, n);
                 if (!other) return {};
-                return shown(
-                    Eigen::VectorXd(other->column(motion::Column::theta).array() + at(best_filled_, Unknown::offset)));
+                return shown(Eigen::VectorXd(other->column(motion::Column::theta).array() + best_filled_.offset));
             };
             const Eigen::VectorXd theta = run.column(motion::Column::theta),
                                   velocity = run.column(motion::Column::velocity);
@@ -831,7 +820,7 @@ private:
     [[nodiscard]] std::vector<Structure> structures(std::span<const int> columns, bool is_white) {
         const auto system = system_of(best_filled_);
         if (!system) return {};
-        const model::State initial{at(best_filled_, Unknown::theta0), at(best_filled_, Unknown::velocity0)};
+        const model::State initial{best_filled_.theta0, best_filled_.velocity0};
         const auto run = driven(*system, question_.M.value_or(model::Excitation()), initial, question_.t.size());
         if (!run) return {};
         std::vector<Structure> found{drift(question_.t, columns, 0, is_white)};
@@ -860,10 +849,9 @@ private:
         Covariance covariance = weighed.covariance;
         breakaway_ = best_breakaway_;
         found.value = best_filled_ = filled_best();
-        if (!question_.M && !question_.gives(Unknown::Re)) {
-            at(found.value, Unknown::Re) =
-                std::max(at(found.value, Unknown::Rd), breakaway_ * at(found.value, Unknown::k));
-            at(found.silent, Unknown::Re) = true;
+        if (!question_.M && !question_.given.Re) {
+            found.value.Re = std::max(found.value.Rd, breakaway_ * found.value.k);
+            found.silent.Re = true;
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
@@ -879,14 +867,13 @@ private:
             allow_for_drift(weighed.slopes, memory, Eigen::VectorXd::Ones(count()), covariance, found);
         }
         for (Eigen::Index i = 0; i < count(); ++i) {
-            const auto which = static_cast<std::size_t>(unknowns_[static_cast<std::size_t>(i)]);
-            found.fitted[which] = true;
-            found.silent[which] = covariance.silent[static_cast<std::size_t>(i)] || tells_nothing_[which];
+            const auto place = static_cast<std::size_t>(i);
+            at(found.silent, unknowns_[place]) = covariance.silent[place] || at(tells_nothing_, unknowns_[place]);
         }
         for (const Eigen::MatrixXd& one : cautious) {
             set_errors(full_of(one), spread, found);
-            for (std::size_t i = 0; i < found.error.size(); ++i) {
-                found.cautious[i] = std::max(found.cautious[i], found.error[i]);
+            for (const Unknown which : all_unknowns) {
+                at(found.cautious, which) = std::max(at(found.cautious, which), at(found.error, which));
             }
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
                 ratio->cautious = std::max(ratio->cautious, ratio->error);
@@ -897,13 +884,14 @@ private:
         if (found.is_unexplained && !found.wild) found.has_errors = false;
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors assume a motion, and there may be none
-            found.error.fill(0);
-            found.cautious.fill(0);
+            found.error = found.cautious = {};
             for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
                 ratio->error = ratio->cautious = 0;
             }
             for (const Unknown which : unknowns_) at(found.silent, which) = true;
-            found.low.fill(-model::never), found.high.fill(model::never);
+            for (const Unknown which : all_unknowns) {
+                at(found.low, which) = -model::never, at(found.high, which) = model::never;
+            }
         }
         const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
         found.predicted.assign(predicted_all.begin(), predicted_all.end());
@@ -956,8 +944,7 @@ private:
         for (const Structure& one : lacking) {
             const bool is_friction = one.what == Follows::velocity;
             if (one.what == Follows::time || question_.gives(is_friction ? Unknown::Rd : Unknown::k)) continue;
-            const double size =
-                is_friction ? at(best_filled_, Unknown::Rd) : at(best_filled_, Unknown::k) * record_.range / 4;
+            const double size = is_friction ? best_filled_.Rd : best_filled_.k * record_.range / 4;
             for (Eigen::Index i = is_friction ? first_falling : first_bent; i < one.columns.cols(); ++i) {
                 add(one.columns.col(i), size);
             }
@@ -977,7 +964,7 @@ private:
         const Nuisance steady = nuisance(ramp, record_.range, best_->residual, memory, J, whole, noise);
         const double more = steady.covariance(zero, zero) - remembered_covariance(memory, J, whole, noise)(zero, zero);
         covariance.matrix(zero, zero) += wider[zero] * wider[zero] * more;
-        at(found.value, Unknown::offset) += steady.shift[zero];
+        found.value.offset += steady.shift[zero];
         Eigen::VectorXd change = Eigen::VectorXd::Zero(count());
         change[zero] = steady.shift[zero];
         return change;
@@ -1033,7 +1020,7 @@ private:
             const double error = is_open ? INFINITY : 2 * spread * std::sqrt(covariance(place, place));
             low -= error, high += error;
         }
-        if (which < Unknown::theta0) low = std::max(low, which == Unknown::Re ? at(found.value, Unknown::Rd) : 0.0);
+        if (which < Unknown::theta0) low = std::max(low, which == Unknown::Re ? found.value.Rd : 0.0);
     }
 
     /// The change of this parameter alone in direction `way` that worsens the fit by two standard errors.
@@ -1060,7 +1047,7 @@ private:
 
     /// The range of Re of a free decay: Re holds the mass where it rests, but not at the previous turn.
     std::pair<double, double> breakaways() const {
-        const double k = at(best_filled_, Unknown::k), Rd = at(best_filled_, Unknown::Rd);
+        const double k = best_filled_.k, Rd = best_filled_.Rd;
         const auto decay = decay_of(best_filled_);
         if (!decay) return {Rd, INFINITY};
         const double half = std::numbers::pi / (omega0_of(best_filled_) * std::sqrt(1 - decay->zeta * decay->zeta));
@@ -1119,12 +1106,12 @@ private:
 
     /// Computes omega0, zeta and Rd/k, with errors that include the correlations of their parts.
     void ratios(const Eigen::MatrixXd& covariance, double spread, Identified& found) const {
-        const double I = at(found.value, Unknown::I), k = at(found.value, Unknown::k);
-        const double Rd = at(found.value, Unknown::Rd);
+        const double I = found.value.I, k = found.value.k;
+        const double Rd = found.value.Rd;
         const double omega0 = omega0_of(found.value), zeta = zeta_of(found.value);
         using Value = double (*)(const Parameters&);
         const auto error = [&](Unknown told, Value value, double by_I, double by_k, double by_C, double by_Rd) {
-            if (!question_.M && found.silent[static_cast<std::size_t>(told)]) return 0.0;
+            if (!question_.M && at(found.silent, told)) return 0.0;
             Eigen::VectorXd by = Eigen::VectorXd::Zero(unknown_count);
             by.head(4) << by_I, by_k, by_C, by_Rd;
             return std::max(least_error(value), spread * std::sqrt(std::max(0.0, by.dot(covariance * by))));
@@ -1152,7 +1139,7 @@ private:
     std::optional<double> best_rest_ = {};
     std::optional<LeastSquares> best_;
     std::optional<LeastSquares> freest_;  // best fit before undetermined parameters were set to 0
-    std::array<bool, unknown_count> tells_nothing_{};
+    OfEach<bool> tells_nothing_;
     // for a driven motion: sampled sums of squares and their parameters
     std::vector<std::pair<double, Parameters>> seen_;
     Parameters best_filled_{};

@@ -24,20 +24,31 @@ inline constexpr int unknown_count = 8;
 inline constexpr std::array<std::string_view, unknown_count> unknown_names{"I",  "k",      "C",         "Rd",
                                                                            "Re", "theta0", "velocity0", "offset"};
 
-/// The entry for this parameter in a list of all.
-template <class List>
-auto& at(List& all, Unknown which) {
-    return all[static_cast<std::size_t>(which)];
+inline constexpr std::array<Unknown, unknown_count> all_unknowns{
+    Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::theta0, Unknown::velocity0, Unknown::offset};
+
+/// A value for each of these parameters.
+template <class T>
+struct OfEach {
+    T I{}, k{}, C{}, Rd{}, Re{}, theta0{}, velocity0{}, offset{};
+};
+template <class Values>
+auto& at(Values& all, Unknown which) {
+    constexpr std::array members{&Values::I,  &Values::k,      &Values::C,         &Values::Rd,
+                                 &Values::Re, &Values::theta0, &Values::velocity0, &Values::offset};
+    return all.*members[static_cast<std::size_t>(which)];
+}
+constexpr std::string_view name(Unknown which) {
+    return unknown_names[static_cast<std::size_t>(which)];
 }
 
 struct IdentifyQuestion {
     std::vector<double> t, theta;  ///< times increase; at least eight samples, and as many as unknowns
     /// none: a free decay, which determines ratios only: I = 1 unless I or k is given
     std::optional<model::Excitation> M = {};
-    std::array<std::optional<double>, unknown_count> given = {};  ///< values of parameters that are not fitted
+    OfEach<std::optional<double>> given = {};  ///< values of parameters that are not fitted
 
     bool gives(Unknown which) const { return at(given, which).has_value(); }
-    double given_or(Unknown which, double otherwise) const { return at(given, which).value_or(otherwise); }
 };
 
 struct IdentifiedRatio {
@@ -46,11 +57,11 @@ struct IdentifiedRatio {
 };
 
 struct Identified {
-    std::array<double, unknown_count> value{}, error{};  ///< error: one standard deviation; 0 for given parameters
-    std::array<double, unknown_count> cautious{};        ///< the same; 0: none
-    std::array<bool, unknown_count> fitted{}, silent{};  ///< silent: not determined by the record
+    OfEach<double> value, error;  ///< error: one standard deviation; 0 for given parameters
+    OfEach<double> cautious;      ///< the same; 0: none
+    OfEach<bool> silent;          ///< silent: not determined by the record
     /// for silent parameters: values from low to high fit about equally well
-    std::array<double, unknown_count> low{}, high{};
+    OfEach<double> low, high;
     IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};  ///< determined by a free decay
     std::vector<double> predicted;                  ///< at the times of the record
     double noise = 0;                               ///< standard deviation of the residual

@@ -225,7 +225,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     question.given = {asked.I,         asked.k, asked.C, asked.Rd, asked.Re, number("theta0"), number("velocity0"),
                       number("offset")};
     if (!options.has("free")) return;
-    std::vector<bool> held(analysis::unknown_count, true);
+    analysis::OfEach<bool> is_free;
     for (const std::string& name : free_names(L, options)) {
         const auto* const known = std::ranges::find(analysis::unknown_names, name);
         if (known == analysis::unknown_names.end()) {
@@ -235,16 +235,16 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
                           .culprit = name,
                           .cure = text::did_you_mean(name, analysis::unknown_names)});
         }
-        const auto place = static_cast<std::size_t>(known - analysis::unknown_names.begin());
-        if (question.given[place]) options.fail(text::error("{} is given, so it cannot be fitted", name));
-        held[place] = false;
+        const Unknown which = analysis::all_unknowns[static_cast<std::size_t>(known - analysis::unknown_names.begin())];
+        if (question.gives(which)) options.fail(text::error("{} is given, so it cannot be fitted", name));
+        at(is_free, which) = true;
     }
     for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
-        if (!held[static_cast<std::size_t>(which)] || question.gives(which)) continue;
+        if (at(is_free, which) || question.gives(which)) continue;
         if (which != Unknown::I && which != Unknown::k) {
             at(question.given, which) = 0;  // an Re below Rd is raised to Rd
         } else if (question.M) {
-            options.fail(text::error("{} is neither given nor in free", at(analysis::unknown_names, which)));
+            options.fail(text::error("{} is neither given nor in free", analysis::name(which)));
         }
     }
 }
@@ -1029,35 +1029,34 @@ void name_values(FitAnswer& fit) {
         constexpr double much = 1.5;
         if (fit.found.has_errors && error > 0 && cautious > much * error) fit.cautious.emplace_back(name, cautious);
     };
-    const bool absolute = fit.question.M || fit.question.gives(Unknown::I) || fit.question.gives(Unknown::k);
+    const bool absolute = fit.question.M || fit.question.given.I || fit.question.given.k;
     if (!absolute) fit.units.M.clear();
     add("omega0", found.omega0.value, found.omega0.error, found.omega0.cautious);
     add("zeta", found.zeta.value, found.zeta.error, found.zeta.cautious);
     add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error, found.Rd_over_k.cautious);
-    for (std::size_t i = absolute ? 0 : static_cast<std::size_t>(Unknown::theta0); i < analysis::unknown_names.size();
-         ++i) {
-        add(analysis::unknown_names[i], found.value[i], found.error[i], found.cautious[i]);
+    for (const Unknown which : analysis::all_unknowns) {
+        if (!absolute && which < Unknown::theta0) continue;
+        add(analysis::name(which), at(found.value, which), at(found.error, which), at(found.cautious, which));
     }
     if (absolute && found.is_noise) {
         for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
     }
-    const double k = at(found.value, Unknown::k);
-    for (std::size_t i = 0; i < analysis::unknown_names.size(); ++i) {
-        if (!found.silent[i]) continue;
-        std::string name(analysis::unknown_names[i]);
-        double low = found.low[i], high = found.high[i];
+    const double k = found.value.k;
+    for (const Unknown which : analysis::all_unknowns) {
+        if (!at(found.silent, which)) continue;
+        std::string name(analysis::name(which));
+        double low = at(found.low, which), high = at(found.high, which);
         if (!absolute && name == "k") name = "omega0", low = std::sqrt(low), high = std::sqrt(high);
         if (!absolute && name == "C") name = "zeta", low /= 2 * std::sqrt(k), high /= 2 * std::sqrt(k);
         if (!absolute && name == "Rd") name = "Rd_over_k", low /= k, high /= k;
         fit.silent.push_back({name, {low, high}});
     }
-    auto system =
-        model::Oscillator::make({.inertia = at(found.value, Unknown::I),
-                                 .stiffness = k,
-                                 .damping = at(found.value, Unknown::C),
-                                 .kinetic_friction = at(found.value, Unknown::Rd),
-                                 .breakaway = std::max(at(found.value, Unknown::Re), at(found.value, Unknown::Rd)),
-                                 .units = fit.units});
+    auto system = model::Oscillator::make({.inertia = found.value.I,
+                                           .stiffness = k,
+                                           .damping = found.value.C,
+                                           .kinetic_friction = found.value.Rd,
+                                           .breakaway = std::max(found.value.Re, found.value.Rd),
+                                           .units = fit.units});
     if (system) fit.system = model::as_system(system.value());
 }
 
@@ -1206,8 +1205,8 @@ constexpr std::array<const char*, 3> causes{
 std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
     std::vector<std::string> notes;
     const analysis::Identified& found = fit.found;
-    const double Rd = at(found.value, Unknown::Rd), Re = fit.question.given_or(Unknown::Re, Rd);
-    if (Re < Rd * (1 - 1e-9) - 3 * at(found.error, Unknown::Rd)) {  // tolerance for rounding in a record without noise
+    const double Rd = found.value.Rd, Re = fit.question.given.Re.value_or(Rd);
+    if (Re < Rd * (1 - 1e-9) - 3 * found.error.Rd) {  // tolerance for rounding in a record without noise
         notes.push_back(fmt::format(
             "Re = {:.6g} is given, but the fitted Rd is greater: Re cannot be less than Rd, so the fit has Re = "
             "Rd; leave Re out, or give Rd as well",
@@ -1252,7 +1251,7 @@ std::vector<std::string> notes_of_fit(const FitAnswer& fit) {
         notes.emplace_back("the noise is stronger in some parts of the record than in others; the errors include that");
     }
     if (found.M_is_noisy) notes.emplace_back("the errors ignore the noise of M: they may be far too small");
-    if (fit.question.given.back() == 0.0) notes.emplace_back("offset is held at 0");
+    if (fit.question.given.offset == 0.0) notes.emplace_back("offset is held at 0");
     if (const std::size_t cut = found.cut_low + found.cut_high; cut > 0) {
         notes.push_back(
             fmt::format("{} samples have the extreme values of the record, as if it were clipped there", cut));
@@ -1281,7 +1280,7 @@ std::string fit_summary(const FitAnswer& fit) {
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit);
     }
-    const double k = at(fit.found.value, Unknown::k);
+    const double k = fit.found.value.k;
     for (const auto& [name, bounds] : unlisted) {
         if (name == "Re" && !fit.found.is_noise) {  // a free decay with I = 1 determines only the ratio
             const std::vector<double> ratios{bounds[0] / k, bounds[1] / k};
