@@ -79,9 +79,9 @@ public:
     /// The pixel at this position of the sheet, or nullptr outside.
     [[nodiscard]] std::uint32_t* at(Point place) {
         const double x = (place.x - corner_.x) * scale_, y = (place.y - corner_.y) * scale_;
-        if (!(x >= 0 && y >= 0 && x < width && y < height)) return nullptr;
-        return &dots[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+        return x >= 0 && y >= 0 && x < width && y < height ? &pixel(y, x) : nullptr;
     }
+    void set(int row, int column, std::uint32_t colour) { pixel(row, column) = 0xFF000000U | colour; }
     void put(cairo_t* to) const {
         cairo_surface_mark_dirty(surface.get());
         cairo_save(to);
@@ -94,6 +94,10 @@ public:
     }
 
 private:
+    [[nodiscard]] std::uint32_t& pixel(double row, double column) {
+        return dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+    }
+
     Point corner_;
     double scale_;
 
@@ -269,17 +273,13 @@ private:
         const Absences absent = absences_of(shades);
         const std::vector<double> right = edges_between(shades.x, panel_.view.x.logarithmic());
         const std::vector<double> up = edges_between(shades.y, panel_.view.y.logarithmic());
-        const auto place = [](const std::vector<double>& edges, double value) {  // edges.size() - 1: outside
-            const auto next = std::ranges::upper_bound(edges, value);
-            return static_cast<std::size_t>((next == edges.begin() ? edges.end() : next) - edges.begin()) - 1;
-        };
         Image map = image();
         for (int row = 0; row < map.height; ++row) {
-            const std::size_t j = place(up, panel_.view.y.at(1 - (row + 0.5) / map.height));
-            for (int column = 0; column < map.width && j < shades.y.size(); ++column) {
-                const std::size_t i = place(right, panel_.view.x.at((column + 0.5) / map.width));
-                if (i >= shades.x.size()) continue;
-                const double z = shades.at(i, j);
+            const auto j = value_at(up, panel_.view.y.at(1 - (row + 0.5) / map.height));
+            for (int column = 0; column < map.width && j; ++column) {
+                const auto i = value_at(right, panel_.view.x.at((column + 0.5) / map.width));
+                if (!i) continue;
+                const double z = shades.at(*i, *j);
                 const auto band = band_of(bands, z);
                 const bool nothing = absent.nothing && z == 0;
                 std::uint32_t colour = hatch(row, column, nothing);
@@ -287,8 +287,7 @@ private:
                     colour =
                         range ? flowing_colour((z - range->low) / range->length()) : shade_colour(*band, bands.size());
                 }
-                map.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(map.width) +
-                         static_cast<std::size_t>(column)] = 0xFF000000U | colour;
+                map.set(row, column, colour);
             }
         }
         map.put(page_.to);
@@ -531,9 +530,7 @@ private:
         Image sample({entry.x, entry.y - 0.4 * em}, {end - entry.x, 0.8 * em}, resolution);
         for (int row = 0; row < sample.height; ++row) {
             for (int column = 0; column < sample.width; ++column) {
-                sample.dots[static_cast<std::size_t>(row) * static_cast<std::size_t>(sample.width) +
-                            static_cast<std::size_t>(column)] =
-                    0xFF000000U | hatch(row, column, entry.sample == Sample::nothing);
+                sample.set(row, column, hatch(row, column, entry.sample == Sample::nothing));
             }
         }
         sample.put(page_.to);

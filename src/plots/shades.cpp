@@ -108,6 +108,12 @@ std::vector<double> edges_between(const std::vector<double>& values, bool logari
     return edges;
 }
 
+std::optional<std::size_t> value_at(const std::vector<double>& edges, double place) {
+    const auto next = std::ranges::upper_bound(edges, place);
+    if (next == edges.begin() || next == edges.end()) return std::nullopt;
+    return static_cast<std::size_t>(next - edges.begin()) - 1;
+}
+
 namespace {
 // every ninth part of matplotlib's viridis (van der Walt and Smith, 2015)
 constexpr std::array<std::uint32_t, 10> viridis{0x440154, 0x482878, 0x3E4A89, 0x31688E, 0x26828E,

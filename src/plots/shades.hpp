@@ -42,6 +42,8 @@ Absences absences_of(const Shades& shades);
 
 /// The midpoints between values, and one edge beyond each end.
 std::vector<double> edges_between(const std::vector<double>& values, bool logarithmic);
+/// The index of the value whose edges enclose the place; none outside.
+std::optional<std::size_t> value_at(const std::vector<double>& edges, double place);
 
 /// From dark 0x440154 to bright 0xFDE725; legible for the colour-blind and in greyscale.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);

@@ -350,18 +350,15 @@ void draw_shades(Canvas& canvas, const Shades& shades, const Projection& project
     const std::vector<ShadeBand> bands = bands_of(shades, most_text_bands);
     const std::vector<double> x = edges_between(shades.x, projection.view.x.logarithmic());
     const std::vector<double> y = edges_between(shades.y, projection.view.y.logarithmic());
-    const auto place = [](const std::vector<double>& edges, double value) {
-        return static_cast<std::size_t>(std::ranges::upper_bound(edges, value) - edges.begin());
-    };
     const int wide = canvas.width() / canvas.columns(), high = canvas.height() / canvas.rows();
     for (int row = 0; row < canvas.rows(); ++row) {
         const double dot_y = (row + 0.5) * high - 0.5;
-        const std::size_t j = place(y, projection.view.y.at(1 - dot_y / (projection.box.height - 1)));
+        const auto j = value_at(y, projection.view.y.at(1 - dot_y / (projection.box.height - 1)));
         for (int column = 0; column < canvas.columns(); ++column) {
             const double dot_x = (column + 0.5) * wide - 0.5;
-            const std::size_t i = place(x, projection.view.x.at(dot_x / (projection.box.width - 1)));
-            if (i == 0 || j == 0 || i > shades.x.size() || j > shades.y.size()) continue;
-            if (const auto band = band_of(bands, shades.at(i - 1, j - 1))) {
+            const auto i = value_at(x, projection.view.x.at(dot_x / (projection.box.width - 1)));
+            if (!i || !j) continue;
+            if (const auto band = band_of(bands, shades.at(*i, *j))) {
                 canvas.glyph_if_free(column * wide, row * high, shade_letter(bands, *band, charset == Charset::ascii));
             }
         }
