@@ -90,7 +90,11 @@ std::optional<Decay> decay_of(const Parameters& p) {
 class Identification {
 public:
     Identification(const IdentifyQuestion& question, const motion::Monitor& monitor)
-        : question_(question), monitor_(monitor), record_(question), starts_(question, record_) {
+        : question_(question),
+          monitor_(monitor),
+          record_(question),
+          starts_(question, record_),
+          columns_(question.t.size(), 0) {
         choose_unknowns();
     }
 
@@ -817,13 +821,13 @@ private:
     }
 
     /// The terms that the model may lack: a drift first, then torques that depend on the velocity and on theta.
-    [[nodiscard]] std::vector<Structure> structures(std::span<const int> columns, bool is_white) {
+    [[nodiscard]] std::vector<Structure> structures(bool is_white) {
         const auto system = system_of(best_filled_);
         if (!system) return {};
         const model::State initial{best_filled_.theta0, best_filled_.velocity0};
         const auto run = driven(*system, question_.M.value_or(model::Excitation()), initial, question_.t.size());
         if (!run) return {};
-        std::vector<Structure> found{drift(question_.t, columns, 0, is_white)};
+        std::vector<Structure> found{drift(question_.t, columns_, 0, is_white)};
         if (const auto changes = responses_at_best(*system, initial, *run)) {
             found.push_back({Follows::velocity, changes->leftCols(velocity_torques), {}});
             found.push_back({Follows::theta, changes->rightCols(theta_torques), {}});
@@ -855,7 +859,7 @@ private:
         }
         found.noise = deviation();
         const Eigen::VectorXd& left = best_->residual;
-        const NoiseMemory memory(left, std::vector<int>(question_.t.size(), 0), weighed.slopes);
+        const NoiseMemory memory(left, columns_, weighed.slopes);
         judge(weighed.slopes, found);
         const double spread = noise_of_errors();
         std::vector<Eigen::MatrixXd> cautious;
@@ -913,9 +917,8 @@ private:
         found.widening = std::max(1.0, by_memory.maxCoeff());
         found.noise_is_uneven = by_place.mean() > much_wider;
         covariance.matrix = wider.asDiagonal() * covariance.matrix * wider.asDiagonal();
-        const std::vector<int> columns(question_.t.size(), 0);
-        const std::vector<Structure> lacking = structures(columns, memory.none());
-        auto wrong = misfit_of(left, {memory.none(), found.noise_is_uneven}, columns, J, lacking);
+        const std::vector<Structure> lacking = structures(memory.none());
+        auto wrong = misfit_of(left, {memory.none(), found.noise_is_uneven}, columns_, J, lacking);
         const Eigen::VectorXd drift = allow_for_drift(J, memory, by_place, covariance, found);
         if (wrong && drift.size() > 0) wrong->shift -= drift;
         const double variance = found.noise * found.noise;
@@ -957,8 +960,7 @@ private:
                                     Covariance& covariance, Identified& found) const {
         const Eigen::Index zero = place_of(Unknown::offset);
         if (zero >= count() || covariance.silent[static_cast<std::size_t>(zero)]) return {};
-        const std::vector<int> columns(question_.t.size(), 0);
-        const Eigen::VectorXd ramp = drift(question_.t, columns, 0, true).columns.col(0),
+        const Eigen::VectorXd ramp = drift(question_.t, columns_, 0, true).columns.col(0),
                               whole = scale_of(best_filled_).whole;
         const double noise = noise_of_errors();
         const Nuisance steady = nuisance(ramp, record_.range, best_->residual, memory, J, whole, noise);
@@ -1069,8 +1071,7 @@ private:
 
     /// Returns whether the residual is noise with a memory of one step.
     bool has_only_memory(const Eigen::MatrixXd& J) const {
-        const std::vector<int> columns(question_.t.size(), 0);
-        const NoiseMemory memory(best_->residual, columns, J, 1);
+        const NoiseMemory memory(best_->residual, columns_, J, 1);
         const Eigen::MatrixXd white = memory.whitened(best_->residual);
         constexpr double very_unusual = 4;
         return is_white({white.data(), question_.t.size()}, very_unusual);
@@ -1129,6 +1130,7 @@ private:
     const motion::Monitor& monitor_;
     MeasuredAngles record_;
     FitStarts starts_;
+    std::vector<int> columns_;  // the measured column of each sample: there is one
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
     Parameters base_{}, best_base_{};
