@@ -288,25 +288,20 @@ int spectrum_of_run(lua_State* L) {
     const std::size_t rows = values.size();
     const ColumnUnits in(units_of(*run));
     Data data{.columns = {}, .is_spectrum = true};
-    const char* window = window_names[static_cast<std::size_t>(asked.window)];
-    if (asked.method == SpectrumMethod::welch) {
-        const auto segments = static_cast<std::size_t>(asked.segments);
-        const std::size_t length = 2 * rows / (segments + 1);
-        if (length < fewest_samples) {
-            options.fail("segments", "{} {} are too few for {} segments, which need {} each", rows, kind, segments,
-                         fewest_samples);
-        }
-        analysis::Spectrum found = analysis::density_of(values, dt, asked.window, length);
-        data.heading = fmt::format("power density of {}: {} {}, {} of {}, {} window", name, rows, kind,
-                                   text::counted(segments, "segment"), length, window);
-        data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
-                        column_of("density", std::move(found.amplitude))};
-        return push_data(L, std::move(data));
+    const bool welch = asked.method == SpectrumMethod::welch;
+    const auto segments = static_cast<std::size_t>(asked.segments);
+    const std::size_t length = 2 * rows / (segments + 1);
+    if (welch && length < fewest_samples) {
+        options.fail("segments", "{} {} are too few for {} segments, which need {} each", rows, kind, segments,
+                     fewest_samples);
     }
-    analysis::Spectrum found = analysis::spectrum_of(values, dt, asked.window);
-    data.heading = fmt::format("spectrum of {}: {} {}, {} window", name, rows, kind, window);
+    analysis::Spectrum found = welch ? analysis::density_of(values, dt, asked.window, length)
+                                     : analysis::spectrum_of(values, dt, asked.window);
+    data.heading = fmt::format("{} of {}: {} {},{} {} window", welch ? "power density" : "spectrum", name, rows, kind,
+                               welch ? fmt::format(" {} of {},", text::counted(segments, "segment"), length) : "",
+                               window_names[static_cast<std::size_t>(asked.window)]);
     data.columns = {column_of("frequency", std::move(found.frequency), in.frequency),
-                    column_of("amplitude", std::move(found.amplitude), in.of(name))};
+                    column_of(welch ? "density" : "amplitude", std::move(found.amplitude), welch ? "" : in.of(name))};
     return push_data(L, std::move(data));
 }
 
