@@ -16,17 +16,13 @@ struct AnimateOptions {
     std::optional<double> speed = {}, from = {}, to = {};
 };
 inline constexpr text::Option animate_file_option[] = {
-    {.name = "file",
-     .meaning = "the .svg file of the animation; a browser plays it",
-     .filled = text::fills<&AnimateOptions::file>},
+    text::option<&AnimateOptions::file>("file", "the .svg file of the animation; a browser plays it"),
 };
 inline constexpr text::Option animate_take_options[] = {
     {"speed", "time units per second", text::its_own, text::positive,
      "time units shown per second; by default the whole run in ten seconds", text::fills<&AnimateOptions::speed>},
-    {"from", "time units", text::its_own, text::any_finite, "start time; by default that of the run",
-     text::fills<&AnimateOptions::from>},
-    {"to", "time units", text::its_own, text::any_finite, "end time; by default that of the run",
-     text::fills<&AnimateOptions::to>},
+    text::option<&AnimateOptions::from>("from", "start time; by default that of the run", {.unit = "time units"}),
+    text::option<&AnimateOptions::to>("to", "end time; by default that of the run", {.unit = "time units"}),
 };
 inline constexpr auto all_animate_options =
     text::joined(animate_file_option, animate_take_options, model::units_option);

@@ -43,10 +43,8 @@ inline constexpr text::Option data_plot_options[] = {
      .meaning = "name of an additional curve, or a list: the data of a response have \"jumps\" and, if it "
                 "exists, \"linearised\" and \"den_hartog\""},
     {.name = "zlim", .meaning = "{ from, to }: values beyond get the first or last shade of the map"},
-    {.name = "style",
-     .meaning = "style of the curves; numbers that are not finite are gaps",
-     .filled = text::fills<&plots::Curve::style>,
-     .choices = plots::style_names},
+    text::option<&plots::Curve::style>("style", "style of the curves; numbers that are not finite are gaps",
+                                       {.choices = plots::style_names}),
 };
 inline constexpr auto plot_data_options = text::joined(data_plot_options, figure_options, target_options);
 inline constexpr text::Call plot_data_call{"d:plot", "d:plot{ x = \"r\", y = \"A\" }", plot_data_options, true};
@@ -55,7 +53,7 @@ struct SortOptions {
     bool descending = false;
 };
 inline constexpr text::Option sort_options[] = {
-    {.name = "descending", .meaning = "the greatest first", .filled = text::fills<&SortOptions::descending>},
+    text::option<&SortOptions::descending>("descending", "the greatest first"),
 };
 inline constexpr text::Call sort_call{"d:sort", "d:sort(\"A\", { descending = true })", sort_options, true};
 

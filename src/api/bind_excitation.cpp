@@ -477,21 +477,12 @@ void register_excitation(lua_State* L) {
 // The options of excitation.sampled, relay and delayed.
 
 inline constexpr text::Option sampled_options[] = {
-    {.name = "every",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "sampling interval",
-     .filled = text::fills<&model::SampledController::every>},
-    {.name = "delay",
-     .unit = "time units",
-     .range = text::not_negative,
-     .meaning = "time from sampling to output",
-     .filled = text::fills<&model::SampledController::delay>},
-    {.name = "at",
-     .unit = "time units",
-     .meaning = "the first sampling time; those before the start of a run are left out",
-     .filled = text::fills<&model::SampledController::at>},
+    text::option<&model::SampledController::every>(
+        "every", "sampling interval", {.unit = "time units", .otherwise = text::needed, .range = text::positive}),
+    text::option<&model::SampledController::delay>("delay", "time from sampling to output",
+                                                   {.unit = "time units", .range = text::not_negative}),
+    text::option<&model::SampledController::at>(
+        "at", "the first sampling time; those before the start of a run are left out", {.unit = "time units"}),
     {.name = "start",
      .meaning =
          "a function that returns the memory of a run, a table, which f gets as its fifth argument and may change",
@@ -506,12 +497,8 @@ inline constexpr text::Call sampled_call{
     "every"};
 
 inline constexpr text::Option delayed_options[] = {
-    {.name = "by",
-     .unit = "time units",
-     .otherwise = text::needed,
-     .range = text::positive,
-     .meaning = "age of theta and velocity",
-     .filled = text::fills<&model::DelayedController::by>},
+    text::option<&model::DelayedController::by>(
+        "by", "age of theta and velocity", {.unit = "time units", .otherwise = text::needed, .range = text::positive}),
 };
 inline constexpr text::Call delayed_call{
     "excitation.delayed",
@@ -528,14 +515,8 @@ struct RelayOptions {
 };
 inline constexpr const char* relay_starts[] = {"on", "off"};
 inline constexpr text::Option relay_options[] = {
-    {.name = "on",
-     .otherwise = text::needed,
-     .meaning = "threshold at which it switches on",
-     .filled = text::fills<&RelayOptions::on>},
-    {.name = "off",
-     .otherwise = text::needed,
-     .meaning = "threshold at which it switches off",
-     .filled = text::fills<&RelayOptions::off>},
+    text::option<&RelayOptions::on>("on", "threshold at which it switches on", {.otherwise = text::needed}),
+    text::option<&RelayOptions::off>("off", "threshold at which it switches off", {.otherwise = text::needed}),
     {.name = "amplitude",
      .unit = "torque",
      .otherwise = text::needed,
@@ -546,10 +527,8 @@ inline constexpr text::Option relay_options[] = {
      .meaning =
          "the observed quantity: \"theta\", \"velocity\", the name of a state, or a function of t, theta, velocity, z",
      .wanted = "\"theta\", \"velocity\", the name of a state or a function"},
-    {.name = "start",
-     .meaning = "initial state, if the start is between the thresholds",
-     .filled = text::fills<&RelayOptions::start>,
-     .choices = relay_starts},
+    text::option<&RelayOptions::start>("start", "initial state, if the start is between the thresholds",
+                                       {.choices = relay_starts}),
 };
 inline constexpr text::Call relay_call{"excitation.relay", "excitation.relay{ on = 0.25, off = 0.35, amplitude = 0.2 }",
                                        relay_options};

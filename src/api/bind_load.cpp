@@ -32,22 +32,19 @@ struct LoadOptions {
 };
 constexpr const char* duplicates_names[] = {"keep", "mean", "first", "last"};
 constexpr text::Option load_options[] = {
-    {.name = "skip",
-     .range = {"be a whole number from 0 to 1e+06", [](double x) { return text::is_whole(x, 0, 1e6); }},
-     .meaning = "lines before the names that are no part of the table",
-     .filled = text::fills<&LoadOptions::skip>},
+    text::option<&LoadOptions::skip>(
+        "skip", "lines before the names that are no part of the table",
+        {.range = {"be a whole number from 0 to 1e+06", [](double x) { return text::is_whole(x, 0, 1e6); }}}),
     {.name = "names",
      .meaning = "the names of the columns, instead of those in the file",
      .wanted = "a list of names such as { \"t\", \"theta\" }"},
-    {.name = "sort",
-     .meaning =
-         "true puts the rows in the order of their times: of the column t or time, or of the first one of numbers",
-     .filled = text::fills<&LoadOptions::sort>},
-    {.name = "duplicates",
-     .meaning =
-         "what becomes of rows with the same time: one row with the mean of their numbers, the first or the last",
-     .filled = text::fills<&LoadOptions::duplicates>,
-     .choices = duplicates_names},
+    text::option<&LoadOptions::sort>(
+        "sort",
+        "true puts the rows in the order of their times: of the column t or time, or of the first one of numbers"),
+    text::option<&LoadOptions::duplicates>(
+        "duplicates",
+        "what becomes of rows with the same time: one row with the mean of their numbers, the first or the last",
+        {.choices = duplicates_names}),
 };
 constexpr text::Call load_call{"load", "load(\"log.csv\", { skip = 3, sort = true })", load_options, true};
 

@@ -89,25 +89,20 @@ struct SpectrumOptions {
 constexpr const char* window_names[] = {"hann", "rectangle", "flat top"};
 
 constexpr text::Option spectrum_options[] = {
-    {.name = "of", .meaning = "the column", .filled = text::fills<&SpectrumOptions::of>},
-    {.name = "method",
-     .meaning = "amplitude of the whole record, or welch: power density, the mean over segments that overlap by half",
-     .filled = text::fills<&SpectrumOptions::method>,
-     .choices = method_names},
-    {.name = "segments",
-     .range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }},
-     .meaning = "for method welch: more segments make the result smoother, and coarser in frequency",
-     .filled = text::fills<&SpectrumOptions::segments>},
-    {.name = "window",
-     .meaning = "the weights of the samples: hann in general, rectangle for whole periods, flat top for "
-                "amplitudes",
-     .filled = text::fills<&SpectrumOptions::window>,
-     .choices = window_names},
-    {.name = "from",
-     .unit = "time units",
-     .otherwise = "the beginning",
-     .meaning = "what is before this time (the transient) is left out",
-     .filled = text::fills<&SpectrumOptions::from>},
+    text::option<&SpectrumOptions::of>("of", "the column"),
+    text::option<&SpectrumOptions::method>(
+        "method", "amplitude of the whole record, or welch: power density, the mean over segments that overlap by half",
+        {.choices = method_names}),
+    text::option<&SpectrumOptions::segments>(
+        "segments", "for method welch: more segments make the result smoother, and coarser in frequency",
+        {.range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }}}),
+    text::option<&SpectrumOptions::window>(
+        "window",
+        "the weights of the samples: hann in general, rectangle for whole periods, flat top for "
+        "amplitudes",
+        {.choices = window_names}),
+    text::option<&SpectrumOptions::from>("from", "what is before this time (the transient) is left out",
+                                         {.unit = "time units", .otherwise = "the beginning"}),
 };
 
 constexpr text::Call spectrum_call{
@@ -121,11 +116,9 @@ constexpr text::Option poincare_period[] = {
     period_row("time between samples; needed if the period of M is not known, as for a Lua function", "that of M"),
 };
 constexpr text::Option poincare_from[] = {
-    {.name = "from",
-     .unit = "time units",
-     .otherwise = "the beginning",
-     .meaning = "the time of the first sample, after the transient; it also chooses the phase",
-     .filled = text::fills<&PoincareOptions::from>},
+    text::option<&PoincareOptions::from>("from",
+                                         "the time of the first sample, after the transient; it also chooses the phase",
+                                         {.unit = "time units", .otherwise = "the beginning"}),
 };
 constexpr auto poincare_options = text::joined(poincare_period, instead_of_period, poincare_from);
 

@@ -44,18 +44,15 @@ struct RunOptions {
 inline constexpr text::FixedText<240> integrator_meaning{"the method; by default ", motion::default_integrator.c_str(),
                                                          ". exact and dinal1989 take one body with constant friction"};
 inline constexpr text::Option window_options[] = {
-    {.name = "t_start", .unit = "time units", .meaning = "initial time", .filled = text::fills<&RunOptions::t_start>},
-    {"t_end", "time units", text::its_own, text::any_finite, "end of the run; by default the last of the times",
-     text::fills<&RunOptions::t_end>},
+    text::option<&RunOptions::t_start>("t_start", "initial time", {.unit = "time units"}),
+    text::option<&RunOptions::t_end>("t_end", "end of the run; by default the last of the times",
+                                     {.unit = "time units"}),
     {"dt", "time units", "T0/40", text::positive,
      "time between rows; t_end has a row as well. The default is a fortieth of the natural period (the shortest of "
      "several bodies), but gives at least 1000 rows and at most 100000; without k it gives 1000",
      text::fills<&RunOptions::dt>},
-    {.name = "times",
-     .unit = "time units",
-     .meaning = "times of the rows: a table or a vector, increasing; {} keeps no rows",
-     .filled = text::fills<&RunOptions::times>,
-     .instead_of_previous = true},
+    text::option<&RunOptions::times>("times", "times of the rows: a table or a vector, increasing; {} keeps no rows",
+                                     {.unit = "time units", .instead_of_previous = true}),
 };
 inline constexpr text::Option integrator_option[] = {
     {.name = "integrator",
@@ -65,9 +62,7 @@ inline constexpr text::Option integrator_option[] = {
      .wanted = "an integrator such as integrator.rk4{ h = 0.001 }"},
 };
 inline constexpr text::Option dense_option[] = {
-    {.name = "dense",
-     .meaning = "false keeps only the rows: saves memory, but run:at(t) does not work",
-     .filled = text::fills<&RunOptions::dense>},
+    text::option<&RunOptions::dense>("dense", "false keeps only the rows: saves memory, but run:at(t) does not work"),
 };
 inline constexpr auto simulate_options = text::joined(drive_options, window_options, integrator_option, dense_option,
                                                       more_drive_options, model::units_option);
@@ -80,11 +75,10 @@ struct MoreTime {
     std::optional<std::vector<double>> times = {};
 };
 inline constexpr text::Option continue_options[] = {
-    {"t_end", "time units", text::its_own, text::any_finite,
-     "new end time; by default the last of the times, or the former t_end if the run was stopped before it",
-     text::fills<&MoreTime::t_end>},
-    {"times", "time units", text::its_own, text::any_finite, "further times of rows, for a run with times",
-     text::fills<&MoreTime::times>},
+    text::option<&MoreTime::t_end>(
+        "t_end", "new end time; by default the last of the times, or the former t_end if the run was stopped before it",
+        {.unit = "time units"}),
+    text::option<&MoreTime::times>("times", "further times of rows, for a run with times", {.unit = "time units"}),
 };
 inline constexpr text::Call continue_call{
     "run:continue", "run:continue{ t_end = 40 }", continue_options, true, &simulate_call, "t_end"};

@@ -37,10 +37,10 @@ struct Ratios {
     std::optional<double> breakaway = {};
 };
 constexpr text::Option ratio_options[] = {
-    {"zeta", "", text::its_own, text::not_negative, "viscous damping ratio", text::fills<&Ratios::zeta>},
-    {"friction_ratio", "", text::its_own, text::not_negative, "Rd/Mc", text::fills<&Ratios::friction>},
-    {"breakaway_ratio", "", "friction_ratio", text::any_finite, "Re/Mc, at least friction_ratio",
-     text::fills<&Ratios::breakaway>},
+    text::option<&Ratios::zeta>("zeta", "viscous damping ratio", {.range = text::not_negative}),
+    text::option<&Ratios::friction>("friction_ratio", "Rd/Mc", {.range = text::not_negative}),
+    text::option<&Ratios::breakaway>("breakaway_ratio", "Re/Mc, at least friction_ratio",
+                                     {.otherwise = "friction_ratio"}),
 };
 constexpr auto nondimensional_options = text::joined(ratio_options, law_option, model::units_option);
 constexpr text::Call nondimensional_call{"nondimensional", "nondimensional{ zeta = 0.1, friction_ratio = 0.2 }",

@@ -76,8 +76,9 @@ constexpr Option extremes_options[] = {
     system,
     {"theta0", "rad", "0", text::any_finite, theta0.meaning, text::fills<&ExtremesOptions::theta0>},
     {"velocity0", velocity0.unit, "0", text::any_finite, velocity0.meaning, text::fills<&ExtremesOptions::velocity0>},
-    {"count", "", text::its_own, at_most_ten_million,
-     "the largest number of extremes; needed if the motion never comes to rest", text::fills<&ExtremesOptions::count>}};
+    text::option<&ExtremesOptions::count>("count",
+                                          "the largest number of extremes; needed if the motion never comes to rest",
+                                          {.range = at_most_ten_million})};
 constexpr Call extremes{"theory.extremes", "theory.extremes{ system = sys, theta0 = 1 }", extremes_options};
 
 constexpr Option start_options[] = {system, theta0, velocity0};

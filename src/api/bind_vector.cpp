@@ -671,15 +671,15 @@ constexpr const char* seed_meaning = "the same seed gives the same numbers on ev
 constexpr text::Option uniform_options[] = {
     {"n", "", text::needed, count_range, "how many", text::fills<&UniformNumbers::n>},
     {"seed", "", text::needed, seed_range, seed_meaning, text::fills<&UniformNumbers::seed>},
-    {.name = "from", .meaning = "lower limit", .filled = text::fills<&UniformNumbers::from>},
-    {.name = "to", .meaning = "upper limit, excluded", .filled = text::fills<&UniformNumbers::to>},
+    text::option<&UniformNumbers::from>("from", "lower limit"),
+    text::option<&UniformNumbers::to>("to", "upper limit, excluded"),
 };
 constexpr text::Call uniform_call{"vector.random", "vector.random{ n = 100, seed = 1 }", uniform_options};
 constexpr text::Option normal_options[] = {
     {"n", "", text::needed, count_range, "how many", text::fills<&NormalNumbers::n>},
     {"seed", "", text::needed, seed_range, seed_meaning, text::fills<&NormalNumbers::seed>},
-    {.name = "mean", .meaning = "their mean", .filled = text::fills<&NormalNumbers::mean>},
-    {"std", "", text::its_own, text::not_negative, "their standard deviation", text::fills<&NormalNumbers::std>},
+    text::option<&NormalNumbers::mean>("mean", "their mean"),
+    text::option<&NormalNumbers::std>("std", "their standard deviation", {.range = text::not_negative}),
 };
 constexpr text::Call normal_call{"vector.normal", "vector.normal{ n = 100, seed = 1, std = 0.02 }", normal_options};
 

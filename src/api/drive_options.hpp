@@ -10,7 +10,7 @@
 namespace dinal::api {
 
 inline constexpr text::Option state_options[] = {
-    {.name = "start", .meaning = "value at t_start", .filled = text::fills<&model::OwnState::start>},
+    text::option<&model::OwnState::start>("start", "value at t_start"),
     {.name = "rate",
      .otherwise = text::needed,
      .meaning = "a function of t, theta, velocity, z",
@@ -25,12 +25,9 @@ inline constexpr text::Option event_options[] = {
      .otherwise = text::needed,
      .meaning = "a function of t, theta, velocity, z: the event is where it passes zero",
      .wanted = "a function of t, theta, velocity, z"},
-    {.name = "direction",
-     .meaning = "direction of the crossing",
-     .filled = text::fills<&model::WantedEvent::direction>,
-     .choices = crossing_names},
-    {.name = "stop", .meaning = "true ends the run there", .filled = text::fills<&model::WantedEvent::stop>},
-    {.name = "name", .meaning = "name in run.events", .filled = text::fills<&model::WantedEvent::name>},
+    text::option<&model::WantedEvent::direction>("direction", "direction of the crossing", {.choices = crossing_names}),
+    text::option<&model::WantedEvent::stop>("stop", "true ends the run there"),
+    text::option<&model::WantedEvent::name>("name", "name in run.events"),
     {.name = "act",
      .meaning = "a function of t, theta, velocity, z that returns the new theta and velocity, and may assign to z",
      .wanted = "a function of t, theta, velocity, z"},

@@ -57,20 +57,18 @@ inline constexpr text::Range tick_distance{"be positive: it is the distance betw
 inline constexpr const char* ticks_meaning = "distance between ticks, or a list of ticks";
 
 inline constexpr text::Option figure_options[] = {
-    {.name = "title", .meaning = "title", .filled = text::fills<&FigureOptions::title>},
-    {.name = "xlabel", .meaning = "label of the x axis", .filled = text::fills<&FigureOptions::xlabel>},
-    {.name = "ylabel", .meaning = "label of the y axis", .filled = text::fills<&FigureOptions::ylabel>},
-    {.name = "xlim", .meaning = "visible range, { from, to }", .filled = text::fills<&FigureOptions::xlim>},
-    {.name = "ylim", .meaning = "the same for y", .filled = text::fills<&FigureOptions::ylim>},
+    text::option<&FigureOptions::title>("title", "title"),
+    text::option<&FigureOptions::xlabel>("xlabel", "label of the x axis"),
+    text::option<&FigureOptions::ylabel>("ylabel", "label of the y axis"),
+    text::option<&FigureOptions::xlim>("xlim", "visible range, { from, to }"),
+    text::option<&FigureOptions::ylim>("ylim", "the same for y"),
     {.name = "xticks", .range = tick_distance, .meaning = ticks_meaning},
     {.name = "yticks", .range = tick_distance, .meaning = ticks_meaning},
-    {.name = "xlog", .meaning = "a logarithmic axis", .filled = text::fills<&FigureOptions::xlog>},
-    {.name = "ylog", .meaning = "a logarithmic axis", .filled = text::fills<&FigureOptions::ylog>},
-    {.name = "equal", .meaning = "one unit is as long on both axes", .filled = text::fills<&FigureOptions::equal>},
-    {.name = "axes", .meaning = "false leaves only the curves", .filled = text::fills<&FigureOptions::axes>},
-    {.name = "ends",
-     .meaning = "in a file, puts the names of lines at their ends, not in the legend",
-     .filled = text::fills<&FigureOptions::ends>},
+    text::option<&FigureOptions::xlog>("xlog", "a logarithmic axis"),
+    text::option<&FigureOptions::ylog>("ylog", "a logarithmic axis"),
+    text::option<&FigureOptions::equal>("equal", "one unit is as long on both axes"),
+    text::option<&FigureOptions::axes>("axes", "false leaves only the curves"),
+    text::option<&FigureOptions::ends>("ends", "in a file, puts the names of lines at their ends, not in the legend"),
 };
 
 /// The destination and size of a picture.
@@ -83,27 +81,19 @@ struct TargetOptions {
 };
 
 inline constexpr text::Option target_options[] = {
-    {.name = "file",
-     .meaning = "file to write instead of printing; the ending of the name chooses the format: .svg, .png, "
-                ".pdf or .txt",
-     .filled = text::fills<&TargetOptions::file>},
-    {.name = "size",
-     .unit = "cm",
-     .meaning = "{ width, height } in a file",
-     .filled = text::fills<&TargetOptions::size>},
-    {.name = "width",
-     .range = {"be a whole number from 20 to 1000: columns of text",
-               [](double x) { return text::is_whole(x, 20, 1000); }},
-     .meaning = "columns of the text; by default those of the terminal, or 79",
-     .filled = text::fills<&TargetOptions::width>},
-    {.name = "height",
-     .range = {"be a whole number from 5 to 500: lines of text", [](double x) { return text::is_whole(x, 5, 500); }},
-     .meaning = "lines of the text; by default those of the terminal, or 22",
-     .filled = text::fills<&TargetOptions::height>},
-    {.name = "ascii", .meaning = "plain characters", .filled = text::fills<&TargetOptions::ascii>},
-    {.name = "show",
-     .meaning = "false returns the picture, for print or for plot{ p, q }",
-     .filled = text::fills<&TargetOptions::show>},
+    text::option<&TargetOptions::file>(
+        "file",
+        "file to write instead of printing; the ending of the name chooses the format: .svg, .png, "
+        ".pdf or .txt"),
+    text::option<&TargetOptions::size>("size", "{ width, height } in a file", {.unit = "cm"}),
+    text::option<&TargetOptions::width>("width", "columns of the text; by default those of the terminal, or 79",
+                                        {.range = {"be a whole number from 20 to 1000: columns of text",
+                                                   [](double x) { return text::is_whole(x, 20, 1000); }}}),
+    text::option<&TargetOptions::height>("height", "lines of the text; by default those of the terminal, or 22",
+                                         {.range = {"be a whole number from 5 to 500: lines of text",
+                                                    [](double x) { return text::is_whole(x, 5, 500); }}}),
+    text::option<&TargetOptions::ascii>("ascii", "plain characters"),
+    text::option<&TargetOptions::show>("show", "false returns the picture, for print or for plot{ p, q }"),
 };
 
 inline constexpr text::Option column_options[] = {

@@ -24,24 +24,14 @@ struct PeriodOptions {
     std::optional<double> period = {}, frequency = {}, omega = {};
 };
 constexpr text::Option period_row(const char* meaning, const char* otherwise = text::its_own) {
-    return {.name = "period",
-            .unit = "time units",
-            .otherwise = otherwise,
-            .range = text::positive,
-            .meaning = meaning,
-            .filled = text::fills<&PeriodOptions::period>};
+    return text::option<&PeriodOptions::period>(
+        "period", meaning, {.unit = "time units", .otherwise = otherwise, .range = text::positive});
 }
 inline constexpr text::Option instead_of_period[] = {
-    {.name = "frequency",
-     .unit = "cycles per time unit",
-     .range = text::positive,
-     .meaning = "1/period, instead of period",
-     .filled = text::fills<&PeriodOptions::frequency>},
-    {.name = "omega",
-     .unit = "rad per time unit",
-     .range = text::positive,
-     .meaning = "2 pi/period, instead of period",
-     .filled = text::fills<&PeriodOptions::omega>},
+    text::option<&PeriodOptions::frequency>("frequency", "1/period, instead of period",
+                                            {.unit = "cycles per time unit", .range = text::positive}),
+    text::option<&PeriodOptions::omega>("omega", "2 pi/period, instead of period",
+                                        {.unit = "rad per time unit", .range = text::positive}),
 };
 /// The period given by the options. Raises an error if more than one is given.
 std::optional<double> asked_period(const lua::Options& options);
@@ -58,10 +48,10 @@ inline constexpr text::Option period_options[] = {
         "period of a limit cycle is found"),
     instead_of_period[0],
     instead_of_period[1],
-    {.name = "periods",
-     .range = whole_periods,
-     .meaning = "periods of M in one of the motion, for a subharmonic one; by default as many as are found, up to 32",
-     .filled = text::fills<&SteadyOptions::periods>},
+    text::option<&SteadyOptions::periods>(
+        "periods",
+        "periods of M in one of the motion, for a subharmonic one; by default as many as are found, up to 32",
+        {.range = whole_periods}),
 };
 inline constexpr auto steady_options = text::joined(drive_options, period_options, more_drive_options);
 inline constexpr text::Call steady_call{"sys:steady", "sys:steady{ M = excitation.harmonic{ frequency = 0.4 } }",

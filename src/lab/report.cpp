@@ -224,8 +224,8 @@ struct ReportOptions {
     std::string title, author;
 };
 constexpr text::Option report_options[] = {
-    {.name = "title", .otherwise = text::needed, .meaning = "title", .filled = text::fills<&ReportOptions::title>},
-    {.name = "author", .meaning = "author", .filled = text::fills<&ReportOptions::author>},
+    text::option<&ReportOptions::title>("title", "title", {.otherwise = text::needed}),
+    text::option<&ReportOptions::author>("author", "author"),
 };
 constexpr text::Call report_call{"report", "report{ title = \"Free decay\", author = \"A. Student\" }", report_options};
 

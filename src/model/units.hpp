@@ -51,12 +51,9 @@ std::string with_unit(std::string number, std::string_view unit);
 std::string of_unit(std::string name, std::string_view unit);
 
 inline constexpr text::Option unit_options[] = {
-    {.name = "theta",
-     .otherwise = "\"rad\"",
-     .meaning = "unit of angle or displacement",
-     .filled = text::fills<&Units::theta>},
-    {.name = "t", .meaning = "unit of time", .filled = text::fills<&Units::t>},
-    {.name = "M", .meaning = "unit of torque or force", .filled = text::fills<&Units::M>},
+    text::option<&Units::theta>("theta", "unit of angle or displacement", {.otherwise = "\"rad\""}),
+    text::option<&Units::t>("t", "unit of time"),
+    text::option<&Units::M>("M", "unit of torque or force"),
 };
 inline constexpr text::Call units_call{"units", "units = { theta = \"m\", t = \"s\", M = \"N\" }", unit_options};
 inline constexpr text::Option units_option[] = {

@@ -36,11 +36,11 @@ struct Walls {
 
 inline constexpr text::Range from_0_to_1{"be from 0 to 1", [](double x) { return x >= 0 && x <= 1; }};
 inline constexpr text::Option wall_options[] = {
-    {"lower", "rad", text::its_own, text::any_finite, "lower wall; none if not given", text::fills<&Walls::lower>},
-    {"upper", "rad", text::its_own, text::any_finite, "upper wall, greater than lower; none if not given",
-     text::fills<&Walls::upper>},
-    {"restitution", "", text::its_own, from_0_to_1,
-     "ratio of the speeds after and before an impact; 0: the mass stops at the wall", text::fills<&Walls::restitution>},
+    text::option<&Walls::lower>("lower", "lower wall; none if not given", {.unit = "rad"}),
+    text::option<&Walls::upper>("upper", "upper wall, greater than lower; none if not given", {.unit = "rad"}),
+    text::option<&Walls::restitution>("restitution",
+                                      "ratio of the speeds after and before an impact; 0: the mass stops at the wall",
+                                      {.range = from_0_to_1}),
     {"stiffness", "torque per rad", text::its_own, text::positive,
      "of elastic walls, which take the torque stiffness x + damping x' at the depth x while that is positive; rigid if "
      "not given",

@@ -51,19 +51,14 @@ struct Curve {
 inline constexpr const char* style_names[] = {"line", "points", "fill"};
 inline constexpr const char* dashes_names[] = {"automatic", "solid", "dashed", "dotted", "dash-dotted"};
 inline constexpr text::Option curve_options[] = {
-    {.name = "label", .meaning = "its name in the picture", .filled = text::fills<&Curve::label>},
-    {.name = "style",
-     .meaning = "style of drawing; a fill extends to zero, or to base",
-     .filled = text::fills<&Curve::style>,
-     .choices = style_names},
-    {.name = "dashes",
-     .meaning = "dash pattern of its line; by default a different one for each curve",
-     .filled = text::fills<&Curve::dashes>,
-     .choices = dashes_names},
-    {.name = "colour",
-     .range = {"be a whole number from 1 to 7", [](double x) { return text::is_whole(x, 1, 7); }},
-     .meaning = "its colour, a whole number from 1 to 7; by default a different one for each curve",
-     .filled = text::fills<&Curve::colour>},
+    text::option<&Curve::label>("label", "its name in the picture"),
+    text::option<&Curve::style>("style", "style of drawing; a fill extends to zero, or to base",
+                                {.choices = style_names}),
+    text::option<&Curve::dashes>("dashes", "dash pattern of its line; by default a different one for each curve",
+                                 {.choices = dashes_names}),
+    text::option<&Curve::colour>(
+        "colour", "its colour, a whole number from 1 to 7; by default a different one for each curve",
+        {.range = {"be a whole number from 1 to 7", [](double x) { return text::is_whole(x, 1, 7); }}}),
     {.name = "base", .meaning = "the second edge of a fill: a vector as long as x"},
 };
 

@@ -45,14 +45,12 @@ constexpr text::Option bifurcation_only_options[] = {
     period_row("time between samples; needed unless `at` returns { period = ... }"),
     instead_of_period[0],
     instead_of_period[1],
-    {.name = "skip",
-     .range = {"be a whole number from 0 to 1e6", [](double x) { return text::is_whole(x, 0, 1e6); }},
-     .meaning = "periods to skip while the motion settles",
-     .filled = text::fills<&BifurcationOptions::skip>},
-    {.name = "keep",
-     .range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }},
-     .meaning = "periods to record after that, one row each",
-     .filled = text::fills<&BifurcationOptions::keep>},
+    text::option<&BifurcationOptions::skip>(
+        "skip", "periods to skip while the motion settles",
+        {.range = {"be a whole number from 0 to 1e6", [](double x) { return text::is_whole(x, 0, 1e6); }}}),
+    text::option<&BifurcationOptions::keep>(
+        "keep", "periods to record after that, one row each",
+        {.range = {"be a whole number from 1 to 10000", [](double x) { return text::is_whole(x, 1, 1e4); }}}),
 };
 
 constexpr text::Option options_of_workers[] = {run_options[1], run_options[3], run_options[4]};

@@ -50,30 +50,21 @@ inline constexpr text::Option run_options[] = {
      .meaning =
          "a function of a point, a table such as { r = 0.5, g = 1 }, that returns a table of named numbers and strings",
      .wanted = "a function of a point that returns named numbers"},
-    {.name = "workers",
-     .otherwise = "one per core",
-     .range = workers_range,
-     .meaning = "number of threads; the result does not depend on it",
-     .filled = text::fills<&SweepOptions::workers>},
-    {.name = "seed",
-     .range = seed_range,
-     .meaning = "seed of math.random: each point has its own random numbers, the same in every run of the sweep",
-     .filled = text::fills<&SweepOptions::seed>},
-    {.name = "file",
-     .meaning =
-         "a .csv file for the result; finished points are kept in FILE.part meanwhile, so the same call continues after "
-         "a crash",
-     .filled = text::fills<&SweepOptions::file>},
-    {.name = "max_time",
-     .unit = "s",
-     .range = text::positive,
-     .meaning =
-         "time limit of a point; a longer one fails with a message, and the others go on; a single call of Lua's own "
-         "libraries (a pattern search, os.execute) ends first",
-     .filled = text::fills<&SweepOptions::max_time>},
-    {.name = "points",
-     .meaning = "{ first, last }: only these rows of the result",
-     .filled = text::fills<&SweepOptions::points>},
+    text::option<&SweepOptions::workers>("workers", "number of threads; the result does not depend on it",
+                                         {.otherwise = "one per core", .range = workers_range}),
+    text::option<&SweepOptions::seed>(
+        "seed", "seed of math.random: each point has its own random numbers, the same in every run of the sweep",
+        {.range = seed_range}),
+    text::option<&SweepOptions::file>(
+        "file",
+        "a .csv file for the result; finished points are kept in FILE.part meanwhile, so the same call continues after "
+        "a crash"),
+    text::option<&SweepOptions::max_time>(
+        "max_time",
+        "time limit of a point; a longer one fails with a message, and the others go on; a single call of Lua's own "
+        "libraries (a pattern search, os.execute) ends first",
+        {.unit = "s", .range = text::positive}),
+    text::option<&SweepOptions::points>("points", "{ first, last }: only these rows of the result"),
 };
 inline constexpr auto sweep_options = text::joined(over_option, run_options);
 inline constexpr text::Call sweep_call{

@@ -3,10 +3,10 @@
 //
 //     struct Pulse { double amplitude = 1, at = 0, width = 0; };
 //     inline constexpr text::Option pulse_options[] = {
-//         {.name = "amplitude", .unit = "torque", .meaning = "the height", .filled = text::fills<&Pulse::amplitude>},
-//         {.name = "at", .unit = "time units", .meaning = "where it begins", .filled = text::fills<&Pulse::at>},
-//         {.name = "width", .unit = "time units", .otherwise = text::needed, .range = text::positive,
-//          .meaning = "how long it lasts", .filled = text::fills<&Pulse::width>},
+//         text::option<&Pulse::amplitude>("amplitude", "the height", {.unit = "torque"}),
+//         text::option<&Pulse::at>("at", "where it begins", {.unit = "time units"}),
+//         text::option<&Pulse::width>("width", "how long it lasts",
+//                                     {.unit = "time units", .otherwise = text::needed, .range = text::positive}),
 //     };
 #pragma once
 
@@ -49,7 +49,7 @@ using OptionValue = std::variant<std::monostate, double, bool, std::size_t, std:
 /// In the order of OptionValue. `other` is read by the call itself: a system, a column name.
 enum class OptionKind { other, number, flag, choice, text, numbers };
 
-/// The destination of an option's value, made by fills<&Pulse::width> or sets<set_frequency>.
+/// The destination of an option's value, made by option<&Pulse::width>, fills<...> or sets<set_frequency>.
 struct OptionTarget {
     OptionKind kind = OptionKind::other;
     const void* owner = nullptr;  ///< &owner_tag<Pulse>
@@ -232,6 +232,15 @@ std::string lua_text(std::string_view call, std::span<const Option> options, con
 /// Target: this member, a number, bool, enumeration, string, vector of numbers, or an optional one of these.
 template <auto member>
 inline constexpr OptionTarget fills = detail::member_target<member>();
+
+/// The row of an option that fills this member; `others` are its other properties.
+template <auto member>
+constexpr Option option(const char* name, const char* meaning, Option others = {}) {
+    others.name = name;
+    others.meaning = meaning;
+    others.filled = fills<member>;
+    return others;
+}
 
 /// Target: a function void(T&, double) that converts the value and sets a member shared with another option.
 template <auto function>

@@ -54,8 +54,7 @@ inline constexpr text::Option stribeck_options[] = {
      text::fills<&Stribeck::breakaway>},
     {"speed", "rad per time unit", text::needed, text::positive, "speed at which Re - Rd has fallen to 1/e",
      text::fills<&Stribeck::speed>},
-    {"shape", "", text::its_own, text::positive, "the power of the speed in the exponent",
-     text::fills<&Stribeck::shape>},
+    text::option<&Stribeck::shape>("shape", "the power of the speed in the exponent", {.range = text::positive}),
 };
 inline constexpr text::Call stribeck_call{"friction.stribeck", "friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 }",
                                           stribeck_options};

@@ -48,10 +48,7 @@ struct Step {
 };
 
 inline constexpr text::Option step_options[] = {
-    {.name = "amplitude",
-     .unit = rows::torque,
-     .meaning = "the torque from the time `at` on",
-     .filled = text::fills<&Step::amplitude>},
+    text::option<&Step::amplitude>("amplitude", "the torque from the time `at` on", {.unit = rows::torque}),
     rows::at<Step>("the time of the step"),
 };
 inline constexpr TermText Step::about{
@@ -118,7 +115,7 @@ struct Ramp {
 };
 
 inline constexpr text::Option ramp_options[] = {
-    {"slope", "torque per time unit", text::its_own, text::any_finite, "slope", text::fills<&Ramp::slope>},
+    text::option<&Ramp::slope>("slope", "slope", {.unit = "torque per time unit"}),
     rows::at<Ramp>(),
     {"duration", rows::time, "math.huge", text::positive_or_infinite, "duration of the rise",
      text::fills<&Ramp::duration>},
@@ -165,8 +162,8 @@ inline constexpr text::Option square_options[] = {
     rows::period<Square>(),
     rows::frequency<Square>(),
     rows::omega<Square>(),
-    {"duty", "", text::its_own, text::between_0_and_1, "the fraction of a period for which it is positive",
-     text::fills<&Square::duty>},
+    text::option<&Square::duty>("duty", "the fraction of a period for which it is positive",
+                                {.range = text::between_0_and_1}),
     rows::at<Square>(rows::where_a_period_begins),
 };
 inline constexpr TermText Square::about{

@@ -25,17 +25,13 @@ struct Samples {
     std::vector<double> slopes = {};    ///< slopes of a cubic spline at the points, computed
 };
 inline constexpr text::Option between_options[] = {
-    {.name = "interpolation",
-     .meaning =
-         "interpolation between the points: straight lines, a cubic spline (not-a-knot, or periodic), or each value "
-         "held until the next time",
-     .filled = text::fills<&Samples::interpolation>,
-     .choices = interpolation_names},
-    {.name = "period",
-     .unit = "time units",
-     .range = text::positive,
-     .meaning = "period of the points; a last point one period after the first repeats it",
-     .filled = text::fills<&Samples::period>},
+    text::option<&Samples::interpolation>(
+        "interpolation",
+        "interpolation between the points: straight lines, a cubic spline (not-a-knot, or periodic), or each value "
+        "held until the next time",
+        {.choices = interpolation_names}),
+    text::option<&Samples::period>("period", "period of the points; a last point one period after the first repeats it",
+                                   {.unit = "time units", .range = text::positive}),
 };
 inline constexpr text::Option points_options[] = {
     {"t", "time units", text::needed, text::any_finite, "times, which increase", text::fills<&Samples::t>},

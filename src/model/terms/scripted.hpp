@@ -145,8 +145,7 @@ inline void repeat_after(Scripted& s, double period) {
     s.period = period;
 }
 inline constexpr text::Option scripted_options[] = {
-    {"breaks", "time units", text::its_own, text::any_finite, "times at which it jumps or kinks",
-     text::fills<&Scripted::breaks>},
+    text::option<&Scripted::breaks>("breaks", "times at which it jumps or kinks", {.unit = "time units"}),
     {"period", "time units", text::its_own, text::positive, "period of the breaks", text::sets<repeat_after>},
 };
 inline constexpr TermText Scripted::about{

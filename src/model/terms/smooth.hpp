@@ -182,13 +182,11 @@ inline void omega_of_period(Harmonic& h, double period) {
 inline constexpr text::Option harmonic_options[] = {
     rows::amplitude<Harmonic>(),
     {"frequency", rows::cycles, text::needed, text::not_negative, "omega / (2 pi)", text::sets<omega_of_frequency>},
-    {.name = "omega",
-     .unit = "rad per time unit",
-     .otherwise = text::needed,
-     .range = text::not_negative,
-     .meaning = "2 pi frequency",
-     .filled = text::fills<&Harmonic::omega>,
-     .instead_of_previous = true},
+    text::option<&Harmonic::omega>("omega", "2 pi frequency",
+                                   {.unit = "rad per time unit",
+                                    .otherwise = text::needed,
+                                    .range = text::not_negative,
+                                    .instead_of_previous = true}),
     {.name = "period",
      .unit = rows::time,
      .otherwise = text::needed,
@@ -196,7 +194,7 @@ inline constexpr text::Option harmonic_options[] = {
      .meaning = "1/frequency",
      .filled = text::sets<omega_of_period>,
      .instead_of_previous = true},
-    {.name = "phase", .unit = "rad", .meaning = "at t = 0", .filled = text::fills<&Harmonic::phase>},
+    text::option<&Harmonic::phase>("phase", "at t = 0", {.unit = "rad"}),
 };
 inline constexpr TermText Harmonic::about{
     {"excitation.harmonic", "excitation.harmonic{ amplitude = 1, frequency = 1 }", harmonic_options},
@@ -273,7 +271,7 @@ inline constexpr text::Option chirp_options[] = {
     {"to", rows::cycles, text::needed, text::not_negative, "the last frequency", text::fills<&Chirp::to>},
     {"duration", rows::time, text::needed, text::positive, "from the first to the last", text::fills<&Chirp::duration>},
     rows::at<Chirp>(),
-    {.name = "phase", .unit = "rad", .meaning = "at the time `at`", .filled = text::fills<&Chirp::phase>},
+    text::option<&Chirp::phase>("phase", "at the time `at`", {.unit = "rad"}),
 };
 inline constexpr TermText Chirp::about{
     {"excitation.chirp", "excitation.chirp{ from = 0.2, to = 2, duration = 20 }", chirp_options},

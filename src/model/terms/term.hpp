@@ -162,11 +162,11 @@ inline constexpr const char* where_a_period_begins = "start of a period";
 
 template <class T>
 constexpr text::Option amplitude(const char* meaning = "greatest value") {
-    return {.name = "amplitude", .unit = torque, .meaning = meaning, .filled = text::fills<&T::amplitude>};
+    return text::option<&T::amplitude>("amplitude", meaning, {.unit = torque});
 }
 template <class T>
 constexpr text::Option at(const char* meaning = "start") {
-    return {.name = "at", .unit = time, .meaning = meaning, .filled = text::fills<&T::at>};
+    return text::option<&T::at>("at", meaning, {.unit = time});
 }
 template <class T>
 constexpr text::Option width(const char* meaning = "duration") {

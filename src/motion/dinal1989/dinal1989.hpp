@@ -28,13 +28,9 @@ struct Dinal1989 {
 inline constexpr const char* stop_rules[] = {"listing", "text"};
 inline constexpr text::Option dinal1989_options[] = {
     {"h", "time units", text::needed, text::positive, "the step", text::fills<&Dinal1989::h>},
-    {.name = "stop",
-     .meaning = "the stop rule: that of the listing, or that of the report's text",
-     .filled = text::fills<&Dinal1989::stop>,
-     .choices = stop_rules},
-    {.name = "slip",
-     .meaning = "with the wrong index of the report's chapter 6",
-     .filled = text::fills<&Dinal1989::slip>},
+    text::option<&Dinal1989::stop>("stop", "the stop rule: that of the listing, or that of the report's text",
+                                   {.choices = stop_rules}),
+    text::option<&Dinal1989::slip>("slip", "with the wrong index of the report's chapter 6"),
 };
 
 inline constexpr MethodText Dinal1989::about{

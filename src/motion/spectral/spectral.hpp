@@ -29,8 +29,7 @@ struct Spectral {
 };
 
 inline constexpr text::Option spectral_options[] = {
-    {"tolerance", "", text::its_own, text::between_0_and_1, "relative error on each panel",
-     text::fills<&Spectral::tolerance>},
+    text::option<&Spectral::tolerance>("tolerance", "relative error on each panel", {.range = text::between_0_and_1}),
     {"max_panel", "time units", "0.6 T0", text::positive_or_infinite, "the longest panel",
      text::fills<&Spectral::max_panel>},
     {"narrowest", "time units", "0.0585 T0", text::positive_or_infinite,
