@@ -38,10 +38,20 @@ bool loads(lua_State* L, const std::string& text) {
     return good;
 }
 
+/// Returns whether a string continues on the next line: "...\\" or "...\\z  ".
+bool goes_on(std::string_view text) {
+    if (text.ends_with('\\')) {
+        return true;
+    }
+    const std::size_t last = text.find_last_not_of(" \t\r\n");
+    return last != std::string_view::npos && last > 0 && text.substr(last - 1, 2) == "\\z";
+}
+
 /// Returns whether the message on the top of the stack says that the chunk ended too early.
-bool ended_early(lua_State* L) {
+bool ended_early(lua_State* L, std::string_view chunk) {
     const std::string_view message = lua::text_at(L, -1);
-    return lua::is_about_end(message) && !lua::is_about_unfinished_string(message);  // a quoted string ends on its line
+    // A quoted string ends on its line unless a backslash escapes the newline.
+    return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || goes_on(chunk));
 }
 
 std::string returned(std::string_view expression) {
@@ -153,11 +163,11 @@ Chunk compile(lua_State* L, const std::string& text) {
         chunk.expression = expression;
         return chunk;
     }
-    bool early = ended_early(L);
+    bool early = ended_early(L, text);
     chunk.waits = early ? what_is_missing(L, text) : "";
     lua_pop(L, 1);
     const bool statements = load(L, text);
-    const bool statements_early = !statements && ended_early(L);
+    const bool statements_early = !statements && ended_early(L, text);
     chunk.waits = statements_early ? what_is_missing(L, text) : chunk.waits;
     early = !statements && (statements_early || early);
     if (quiet.find_first_of("\n;") != std::string::npos) {
