@@ -6,7 +6,7 @@
 
 #include "model/laws/coulomb.hpp"
 #include "model/laws/stribeck.hpp"
-#include "model/springs/polynomial_spring.hpp"
+#include "model/springs.hpp"
 #include "motion/integrators.hpp"
 #include "motion/simulate.hpp"
 #include "support/catch.hpp"
