@@ -410,30 +410,41 @@ private:
     void tell_slides() {
         using enum model::EventKind;
         std::size_t n = 0;
-        double from = run_.t_start, all = 0;
+        double from = run_.t_start, begun = run_.initial.theta, all = 0;
         bool slides = false, any = false;
-        std::vector<std::string> may_jump{"M"};
+        std::vector<std::string> may_jump;
+        const auto reads = [](const model::Excitation& M) { return M.has_script(); };
+        if (std::ranges::any_of(whole_.drive.loads, reads)) may_jump.emplace_back("M");
         const auto sprung = [](const model::Joint& joint) { return !joint.spring.none(); };
         if (std::ranges::any_of(whole_.system.joints, sprung)) may_jump.emplace_back("a spring");
         if (!whole_.drive.states.empty()) may_jump.emplace_back("the rate of a state");
-        const auto add_slide = [&](double to, const std::string& why) {
+        const auto add_slide = [&](double to, double theta, const std::string& why) {
             all += to - from, ++n;
             if (n > most_slides) return;
-            say("From t = {} to {} it slid along a surface on which {} jumps and drives it back from both sides{}.",
-                at(from), at(to), fmt::join(may_jump, " or "), why);
+            constexpr double still = 1e-9;
+            const auto [low, high] = reach();
+            const std::string what = fmt::format("{}", fmt::join(may_jump, " or "));
+            if (std::fabs(theta - begun) <= still * std::max(std::fabs(low), std::fabs(high))) {
+                say("From t = {} to {} it stood at theta = {}: {} jumps there and drives it back from both sides{}.",
+                    at(from), at(to), text::number_text(theta, high - low), what, why);
+            } else {
+                say("From t = {} to {} it slid along a surface on which {} jumps and drives it back from both sides{}.",
+                    at(from), at(to), what, why);
+            }
         };
         for (const model::Event& event : run_.events) {
-            if (event.kind == slide_begins) from = event.t, slides = true;
+            if (event.kind == slide_begins) from = event.t, begun = event.theta, slides = true;
             if (event.kind == slide_ends && (slides || !any)) {
                 const bool stops = std::ranges::any_of(run_.events, [&](const model::Event& other) {
                     return other.t == event.t && (other.kind == stick || other.kind == rest || other.kind == impact);
                 });
-                add_slide(event.t, stops ? "; then a contact or a wall stopped it" : "; then one side no longer did");
+                add_slide(event.t, event.theta,
+                          stops ? "; then a contact or a wall stopped it" : "; then one side no longer did");
                 slides = false;
             }
             any = any || event.kind == slide_begins || event.kind == slide_ends;
         }
-        if (slides) add_slide(run_.t_stop, ", until the run ended");
+        if (slides) add_slide(run_.t_stop, run_.state_at_stop.theta, ", until the run ended");
         if (n > most_slides) say("There were {} such slides, which lasted {} in all.", n, at(all));
     }
 
@@ -456,12 +467,18 @@ private:
         end_paragraph();
     }
 
-    /// Describes only the range if links disturb the turns.
-    void tell_reach() {
+    /// The least and the greatest angle.
+    std::pair<double, double> reach() const {
         double low = run_.initial.theta, high = low;
         for (const Stretch& swing : swings_) {
             low = std::min(low, swing.end.theta), high = std::max(high, swing.end.theta);
         }
+        return {low, high};
+    }
+
+    /// Describes only the range if links disturb the turns.
+    void tell_reach() {
+        const auto [low, high] = reach();
         const double size = std::max(std::fabs(low), std::fabs(high));
         if (low < high) {
             say("theta was between {} and {}.", text::number_text(low, size), text::number_text(high, size));
