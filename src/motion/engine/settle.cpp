@@ -15,7 +15,7 @@ namespace {
 // rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
 // If they shrink more slowly, friction is not what stops the body.
-constexpr double most_passages = 1000;
+constexpr double most_legs = 1000;
 constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 
 }  // namespace
@@ -38,7 +38,7 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
     const double pace = std::min(pace_.period, now_.t.hi - pace_.born);
     const bool seen =
         passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > clearly_seen * of_rounding * size;
-    if (seen && passages->all > most_passages * passages->leg) return Settles::no;
+    if (seen && passages->all > most_legs * passages->leg) return Settles::no;
     if (seen && passages->all > last_passages * pace) return Settles::soon;
     recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
     const Motion way = model::motion_of(speed);
