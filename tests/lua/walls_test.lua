@@ -294,4 +294,15 @@ test("bounces end where a load jumps at the wall itself", function()
     near(run.velocity[#run], 0, 1e-6)
 end)
 
+test("a wall without a load keeps a body that friction and another wall hold, too", function()
+    local a, b = { I = 1, walls = { lower = 0, upper = 0.5, restitution = 0 } }, { I = 1, k = 0.5, Rd = 1 }
+    local rig = system { bodies = { a = a, b = b }, links = { l = { "a", "b", walls = { lower = -0.1, upper = 2, restitution = 0.5 }, Rd = 0.5, Re = 2 } } }
+    local M = { a = function(t) return t < 1 and 2 or 0 end, b = function(t) return math.cos(2 * t) end }
+    local run = rig:simulate { M = M, theta0 = { a = 0.3, b = 0.4 }, velocity0 = { a = 0.5, b = 0.5 }, t_end = 1.5 }
+    equal(run.t[#run], 1.5)
+    near(run.a.theta[#run], 0.5, 1e-15)
+    near(run.b.theta[#run], 0.6, 1e-14)
+    closes(run)
+end)
+
 finish()

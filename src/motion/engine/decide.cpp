@@ -449,8 +449,8 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
         const bool sticks = now().rubs(j) && mode().friction[j].way == Motion::stuck;
         constexpr double wall = 1e30;
         const double blunt = mode().friction[j].blunt;
-        box.low(c) = sticks ? -blunt - mechanics_.holding(j, Motion::forward, now().here()) : 0;
-        box.high(c) = sticks ? std::min(wall, blunt + mechanics_.holding(j, Motion::backward, now().here())) : 0;
+        box.low(c) = -blunt - (sticks ? mechanics_.holding(j, Motion::forward, now().here()) : 0);
+        box.high(c) = std::min(wall, blunt + (sticks ? mechanics_.holding(j, Motion::backward, now().here()) : 0));
         if (mode().leans[j] > 0 || mode().rigid[j] != 0) box.low(c) = -wall;
         if (mode().leans[j] < 0 || mode().rigid[j] != 0) box.high(c) = wall;
         box.slope(c) = mode().leans[j] == 0 ? -now().belt_slopes[j].rate : 0;
