@@ -669,6 +669,22 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
     end
 end)
 
+test("friction stops a body at the step of a staircase, from which side it ever comes", function()
+    for _, Rd in ipairs { 0.05, 0.2 } do
+        for _, I in ipairs { 0.5, 2 } do
+            local sys = system { I = I, k = 0, Rd = Rd, spring = function(x) return 2 * math.floor(x / 0.1) end }
+            for _, theta0 in ipairs { 0.08, 0.1, 0.12, 0.2 } do
+                for _, velocity0 in ipairs { 0, 0.1, -0.1 } do
+                    local run = sys:simulate { M = 1, theta0 = theta0, velocity0 = velocity0, t_end = 60 }
+                    near(run.theta[#run], 0.1, 1e-9)
+                    near(run.velocity[#run], 0, 1e-9)
+                    closes(run)
+                end
+            end
+        end
+    end
+end)
+
 test("a feedback that begins exactly at its limit holds like dry friction", function()
     local signs = {
         function(v) return v > 0 and 1 or v < 0 and -1 or 0 end,

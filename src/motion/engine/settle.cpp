@@ -83,10 +83,21 @@ std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const N
 bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
                             double speed, double later) {
     constexpr double hardly = 1e-3;
+    // Of a step of a staircase, the surface may be at either end.
+    Piecewise function = *back.function;
+    const std::size_t step = function.conditions()[back.condition].step;
+    function.decide(still.here(), 0);
+    std::vector<double> margins;
+    function.margins(still.here(), margins);
+    std::optional<std::size_t> nearest;
+    for (std::size_t c = 0; c < margins.size(); ++c) {
+        if (function.conditions()[c].step != step) continue;
+        if (!nearest || std::fabs(margins[c]) < std::fabs(margins[*nearest])) nearest = c;
+    }
+    if (!nearest) return false;
     const auto margin = [&](double t, const std::vector<double>& y) {
-        std::vector<double> margins;
-        back.function->margins({t, Side::at, y}, margins);
-        return margins[back.condition];
+        function.margins({t, Side::at, y}, margins);
+        return margins[*nearest];
     };
     const model::Weight& first = joint_at(joint).of.front();
     double slope = 0;
