@@ -305,4 +305,13 @@ test("a wall without a load keeps a body that friction and another wall hold, to
     closes(run)
 end)
 
+test("a body without a load stays at its wall while rounding lets an elastic stop begin to pull", function()
+    local b = { I = 0.2, walls = { lower = -0.1, upper = 0.5, restitution = 0 } }
+    local stop = { "a", "b", walls = { lower = -0.2, upper = 1, stiffness = 10, damping = 0 } }
+    local rig = system { bodies = { a = { I = 1 }, b = b }, links = { stop = stop } }
+    local run = rig:simulate { theta0 = { b = -0.1 }, velocity0 = { a = 2, b = 0.5 }, t_end = 20 }
+    equal(run.t[#run], 20)
+    closes(run)
+end)
+
 finish()

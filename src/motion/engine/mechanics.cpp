@@ -657,14 +657,16 @@ double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     if (!own.spring.none()) size += std::fabs(spring_torque(joint, at));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
-        // The depth is a difference of angles and has their rounding.
-        if (deep >= 0) size += own.stops->stiffness * (std::fabs(q) + deep) + own.stops->damping * std::fabs(v);
+        // The depth is a difference of angles and has their rounding, also where it should be 0.
+        const double known = own.size(at.y);
+        if (deep >= -4 * rounding * known)
+            size += own.stops->stiffness * (known + std::fabs(deep)) + own.stops->damping * std::fabs(v);
     }
     if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
-        const double known = own.size(at.y);
-        size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
+        const double parts = own.size(at.y);
+        size += own.stiffness * parts + own.damping * speed_scale(joint, at.y);
         const auto by_steepness = [&](double part) {
-            return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
+            return std::fabs(spring_torque(joint, q + part * parts) - spring_torque(joint, q - part * parts)) /
                    (2 * part);
         };
         // A jump does not count as steepness: over a wider interval it is far less steep.
