@@ -1,6 +1,7 @@
 #include "model/springs.hpp"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

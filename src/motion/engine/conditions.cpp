@@ -319,8 +319,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         crossed.jumps = crossed.jumps || clear;
         if (clear && !function->is_friction()) ++crossed.count;
         all_small = all_small && clear && jump < small * greatest_;
-        const bool again = since <= rather_soon * unit_;
-        if (!clear || (several && !soon_again && !again)) continue;
+        const bool rather_soon_again = since <= rather_soon * unit_;
+        if (!clear || (several && !soon_again && !rather_soon_again)) continue;
         const bool driven_back = soon_again || slides_.stands(*function, now);
         const auto begun = driven_back ? slides_.begin(*function, {.jump = jump}, now) : std::nullopt;
         if (begun) {
@@ -328,7 +328,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
             slides.insert(slides.end(), begun->changes.slides.begin(), begun->changes.slides.end());
             functions.insert(functions.end(), begun->changes.functions.begin(), begun->changes.functions.end());
             crossed.work = begun->work, chatter.crossed(false);
-        } else if (again) {
+        } else if (rather_soon_again) {
             crossed.back = {function, condition, since, jump};
         }
     }

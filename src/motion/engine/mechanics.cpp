@@ -652,21 +652,19 @@ double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double bel
 
 double Mechanics::size_of(std::size_t joint, const Moment& at) const {
     const Joint& own = system_.joints[joint];
-    const double q = angle(joint, at.y);
+    const double q = angle(joint, at.y), known = own.size(at.y);  // q has the rounding of its parts
     double size = std::fabs(own.stiffness * q);
     if (!own.spring.none()) size += std::fabs(spring_torque(joint, at));
     if (own.stops) {
         const double deep = std::max(own.stops->lower - q, q - own.stops->upper), v = velocity(joint, at.y);
         // The depth is a difference of angles and has their rounding, also where it should be 0.
-        const double known = own.size(at.y);
         if (deep >= -4 * rounding * known)
             size += own.stops->stiffness * (known + std::fabs(deep)) + own.stops->damping * std::fabs(v);
     }
     if (own.of.size() > 1) {  // a sum of angles is as accurate as its parts
-        const double parts = own.size(at.y);
-        size += own.stiffness * parts + own.damping * speed_scale(joint, at.y);
+        size += own.stiffness * known + own.damping * speed_scale(joint, at.y);
         const auto by_steepness = [&](double part) {
-            return std::fabs(spring_torque(joint, q + part * parts) - spring_torque(joint, q - part * parts)) /
+            return std::fabs(spring_torque(joint, q + part * known) - spring_torque(joint, q - part * known)) /
                    (2 * part);
         };
         // A jump does not count as steepness: over a wider interval it is far less steep.
