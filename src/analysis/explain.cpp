@@ -537,10 +537,14 @@ private:
                            : "stopped",
                 at(begun.t), place(*(&stop - 1)));
             const double torque = pull(begun);
+            const bool sprung = !system_.spring().none(), fed_back = excitation_.has_feedback();
             const bool driven_back =
-                excitation_.has_feedback() && std::fabs(torque) > limit(torque) && !at_limit(torque, begun);
+                (fed_back || sprung) && std::fabs(torque) > limit(torque) && !at_limit(torque, begun);
             if (has_reasons()) {
-                add(" because {}", driven_back ? "M drives it back from both sides of velocity 0" : reason(torque));
+                add(" because {}", !driven_back ? reason(torque)
+                                   : !sprung    ? "M drives it back from both sides of velocity 0"
+                                   : !fed_back  ? "the spring jumps there and drives it back from both sides"
+                                                : "M or the spring jumps there and drives it back from both sides");
             }
         }
         if (stop.ended_by) {

@@ -325,6 +325,8 @@ test("explain() says when the mass slid along a surface, and why that ended", fu
     has(story, "until the run ended")
     story = told(system { I = 1, k = 1.3, Rd = 0.3 }:simulate { M = function(_, _, v) return v > 0 and -1 or 1 end, theta0 = 3.3, t_end = 20 })
     has(story, "because M drives it back from both sides of velocity 0")
+    story = told(system { I = 1, k = 1, Rd = 0.1, spring = function(x) return 2 * math.floor(x / 0.1) end }:simulate { M = 1, theta0 = 0.15, t_end = 20 })
+    has(story, "at theta = 0.1 because the spring jumps there and drives it back from both sides.")
 end)
 
 -- A load -D sgn(theta - a) beside dry friction: the body passes a and is stopped beside it, ever faster.
