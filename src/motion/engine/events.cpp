@@ -282,7 +282,6 @@ void Engine::press(std::size_t joint, int side) {
     const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
     recorder_->add_jump(now_.t.hi, joint, {.impacts = stored, .kept = -stored});
     now_.mode.presses[joint] = side;
-    conditions_->forget();
     tell(side != 0 ? EventKind::impact : EventKind::released, joint);
 }
 
