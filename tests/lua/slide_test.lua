@@ -745,3 +745,71 @@ test("two bodies that a preload holds together stop at once, and stay together",
 end)
 
 finish()
+
+test("a feedback of the velocity and a preload hold a body together, as dry friction and a preload do", function()
+    local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    for _, amplitude in ipairs { 0.3, 0.9, 1.6 } do
+        local function go(Rd, feedback)
+            return system { I = 1, k = 1, C = 0.1, Rd = Rd, spring = sign }:simulate {
+                M = function(t, _, v) return amplitude * math.sin(t) - feedback * sign(v) end,
+                theta0 = 0.3, velocity0 = 0.5, t_end = 30,
+            }
+        end
+        near(go(0, 0.5).theta, go(0.5, 0).theta, 1e-12)
+    end
+    local function linked(Rd, feedback)
+        return system {
+            bodies = { a = { I = 1, C = 0.1 }, b = { I = 0.5, C = 2, Rd = Rd, spring = function(x) return x^3 + sign(x) end } },
+            links = { l = { "a", "b", k = 1, C = 0.5 } },
+        }:simulate {
+            M = { a = function(_, x) return -2 * sign(x.a) end, b = function(_, _, v) return -feedback * sign(v.b) end },
+            velocity0 = { a = -1, b = -1 }, t_end = 8,
+        }
+    end
+    near(linked(0, 1).a.theta, linked(1, 0).a.theta, 1e-12)
+    -- One that drives the motion on holds nothing: each half cycle is faster than the last by the root of 2.5/1.5.
+    local t, v = 0, 1e-3
+    for _ = 1, 6 do
+        local back = v * math.sqrt(2.5 / 1.5)
+        t, v = t + v / 1.5 + back / 2.5, back
+    end
+    local driven = system { I = 1, k = 0, spring = function(x) return 2 * sign(x) end }
+    local run = driven:simulate { M = function(_, _, w) return 0.5 * sign(w) end, velocity0 = 1e-3, t_end = t }
+    near(run.velocity[#run.t], v, 1e-13)
+end)
+
+test("what rests on the surface of a slide neither switches by rounding nor lets a stop there bear and release", function()
+    local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    -- A clutch pulls a body that a preload holds at its elastic stop.
+    local run = system {
+        bodies = { b = { I = 1, C = 0.2, spring = sign, walls = { lower = 0, upper = 1, stiffness = 10, damping = 1 } }, c = { I = 0.5 } },
+        links = { l = { "b", "c", Rd = 0.2 } },
+    }:simulate {
+        M = { b = function(_, x) return -sign(x.b) end, c = function(t) return math.sin(t) > 0 and 0.1 or -0.1 end }, t_end = 8,
+    }
+    near(run.b.theta, 0 * run.t, 1e-14)
+    near(run.c.theta, 0 * run.t, 1e-14)
+    assert(#run.events < 12)
+    -- The same, thrown by another body that begins at a stop of a link.
+    local thrown = system {
+        bodies = { a = { I = 1, k = 0.5 }, c = { I = 0.5 },
+            b = { I = 1, C = 0.2, spring = sign, walls = { lower = 0, upper = 1, stiffness = 10, damping = 1 } } },
+        links = { l1 = { "a", "b", walls = { lower = -1, upper = 1, stiffness = 100, damping = 0 } }, l2 = { "b", "c", Rd = 0.2 } },
+    }:simulate {
+        M = { b = function(_, x) return -sign(x.b) end, c = function(t) return math.sin(t) > 0 and 0.1 or -0.1 end },
+        theta0 = { a = 1 }, velocity0 = { a = 2 }, t_end = 8,
+    }
+    equal(thrown.status, "end")
+    near(thrown:energy().total.error, 0, 1e-11)
+    -- A clutch sticks to a held body, and its own body has a feedback of the velocity.
+    local stuck = system {
+        bodies = { a = { I = 2, C = 2, spring = function(x) return x end }, b = { I = 0.2, k = 1, C = 0.2, Rd = 1 }, c = { I = 0.5, C = 0.2 } },
+        links = { l1 = { "a", "b", friction = friction.freewheel { Rd = 0.1 } }, l2 = { "b", "c", k = 1 },
+            l3 = { "c", "a", k = 0.5, Rd = 0.5 } },
+    }:simulate {
+        M = { a = function(_, x) return -2 * sign(x.a) end, c = function(_, _, v) return -0.5 * sign(v.c) end },
+        theta0 = { b = 0.5, c = 1 }, velocity0 = { a = 2, c = 2 }, t_end = 8,
+        belt = { a = function(t) return t < 2 and 0.2 or -0.2 end, c = math.sin },
+    }
+    equal(stuck.status, "end")
+end)

@@ -218,6 +218,17 @@ bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
 void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
     ConditionSearch search(segment, ending.before());
     std::vector<double> y, margins;
+    // A slide holds the motion but for rounding of the torques.
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> held(begin.size(), 0);
+    if (slides_.any()) {
+        const double length = 2 * segment.h;
+        sizes_.find(mechanics_, segment, {segment.times[0], segment.side(0), begin});
+        for (std::size_t i = 0; i < n; ++i) {
+            held[n + i] = 64 * rounding * length * sizes_.on_body(i) / mechanics_.own_inertia(i);
+            held[i] = length * held[n + i];
+        }
+    }
     mechanics_.for_each_piecewise(now, [&](Piecewise& function) {
         const std::size_t count = function.conditions().size();
         if (count == 0) return;
@@ -238,7 +249,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             }
         };
         for (std::size_t k = 0; k < told_; ++k) {
-            y[k] = begin[k] * ulps;
+            y[k] = begin[k] * ulps + held[k];
             round(segment.times[0]);
             y[k] = begin[k];
         }

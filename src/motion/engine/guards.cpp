@@ -301,7 +301,7 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
 /// Watches an elastic wall, which pushes while depth and torque are both positive. The depth becomes positive first,
 /// except when a wall was left while still deformed: then the torque does.
 void Guards::watch_stop(std::size_t joint) {
-    if (!joint_at(joint).stops) return;
+    if (!joint_at(joint).stops || of_.conditions.slides().keep_slip(joint, frame_, segment_.moment(0, point_))) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
     const double begin = mechanics_.angle(joint, segment_.moment(0, point_).y);
     const int pressed = now_.mode.presses[joint];

@@ -20,6 +20,8 @@ constexpr double near = 1e-9;
 constexpr double clearly_apart = 1e-12;  // relative to the difference between both sides
 constexpr double way_back = 4;           // rate at which the motion returns to the surface, in the same units
 
+constexpr double short_passage = 1e-5;  // of a place, in time units of the motion
+
 constexpr double hardly = 1e-9;  // a part of a rate that does not count
 
 /// Solves for the shares with which several slides stay on their surfaces. A row has the changes of the rate of one
@@ -218,15 +220,45 @@ std::vector<double> Slides::gradient(const Piecewise& function, const Moment& at
     return slopes;
 }
 
-/// Returns whether two functions slide along the same surface: whether the gradients of their margins are parallel.
-bool Slides::is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at) {
+/// Returns whether a function slides along the surface of a slide: whether the gradients of their margins are parallel.
+/// A place also holds its velocity, so that a margin of both lies on the surface, too, if the place stands still.
+bool Slides::is_same_surface(const Sliding& of, const Piecewise& other, const Moment& at) const {
     constexpr double nearly = 1 - 1e-12;
-    const std::vector<double> slopes = gradient(one, at), others = gradient(other, at);
-    const auto product = [](const std::vector<double>& a, const std::vector<double>& b) {
+    const std::vector<double> slopes = gradient(*of.function, at), others = gradient(other, at);
+    const auto product = [](std::span<const double> a, std::span<const double> b) {
         return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
     };
-    return std::fabs(product(slopes, others)) >=
-           nearly * std::sqrt(product(slopes, slopes)) * std::sqrt(product(others, others));
+    const auto parallel = [&](std::span<const double> a, std::span<const double> b) {
+        return std::fabs(product(a, b)) >= nearly * std::sqrt(product(a, a)) * std::sqrt(product(b, b));
+    };
+    if (!of.of_place || slopes[0] != 0) return parallel(slopes, others);
+    const std::size_t n = mechanics_.bodies();
+    const auto angles = std::span(slopes).subspan(1, n), rest = std::span(others).subspan(1 + 2 * n);
+    return others[0] == 0 && std::all_of(rest.begin(), rest.end(), [](double slope) { return slope == 0; }) &&
+           parallel(angles, std::span(others).subspan(1, n)) && parallel(angles, std::span(others).subspan(1 + n, n));
+}
+
+/// The first slope of a margin whose variables the slide holds: angles, or velocities.
+std::size_t Slides::first_held(const Sliding& of) const {
+    return of.of_place ? 1 : 1 + mechanics_.bodies();
+}
+
+/// Returns whether the surface of a slide does not move, but for rounding of the torques: whether nothing else in its
+/// margin, with these slopes, changes.
+bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, const Moment& at) const {
+    const std::size_t n = mechanics_.bodies(), first = first_held(of);
+    std::vector<double> states(mechanics_.states());
+    if (!states.empty()) mechanics_.rates(at, states.data(), &mode_);
+    double moves = std::fabs(slopes[0]), rounded = 0;
+    for (std::size_t i = 1; i < slopes.size(); ++i) {
+        const double slope = std::fabs(slopes[i]);
+        if (i >= first && i < first + n) {
+            rounded += slope * 64 * rounding * std::fabs(of.jump) / mechanics_.own_inertia(i - first);
+        } else if (slope != 0) {
+            moves += slope * std::fabs(i <= n ? at.y[n + i - 1] : i <= 2 * n ? 1 : states[i - 1 - 2 * n]);
+        }
+    }
+    return moves <= rounded;
 }
 
 bool Slides::keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const {
@@ -236,14 +268,11 @@ bool Slides::keep_slip(std::size_t joint, const Frame& frame, const Moment& at) 
     Eigen::MatrixXd held = Eigen::MatrixXd::Zero(groups, static_cast<Eigen::Index>(sliding_.size()));
     for (std::size_t k = 0; k < sliding_.size(); ++k) {
         const std::vector<double> slopes = gradient(*sliding_[k].function, at);
-        const std::size_t first = sliding_[k].of_place ? 1 : 1 + n;
-        bool moves = false;
-        for (std::size_t i = 0; i < slopes.size(); ++i) {
-            moves = moves || (slopes[i] != 0 && (i < first || i >= first + n));
-        }
-        for (std::size_t i = 0; i < n && !moves; ++i) {
+        if (!stands_still(sliding_[k], slopes, at)) continue;
+        for (std::size_t i = 0; i < n; ++i) {
             for (const auto& [group, by] : frame.bodies[i]) {
-                held(static_cast<Eigen::Index>(group), static_cast<Eigen::Index>(k)) += by * slopes[first + i];
+                held(static_cast<Eigen::Index>(group), static_cast<Eigen::Index>(k)) +=
+                    by * slopes[first_held(sliding_[k]) + i];
             }
         }
     }
@@ -268,6 +297,33 @@ void Slides::put_on_surface(const Sliding& of, const Sides& sides, Now& now, dou
     }
 }
 
+/// Moves y just off a place, to one side of it.
+void Slides::move_aside(const Sliding& of, double side, std::vector<double>& y) const {
+    constexpr double tiny = 1e-12;  // beyond the rounding of angles, within a passage
+    const std::size_t n = mechanics_.bodies();
+    for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
+        const double away = tiny * (std::fabs(y[body]) + unit_ * std::fabs(y[n + body]) +
+                                    std::fabs(of.jump) * unit_ * unit_ / mechanics_.own_inertia(body));
+        y[body] += std::copysign(away, side * by);
+    }
+}
+
+/// Moves y off a place. If the motion there is slow, it leaves the place, so that functions of the velocity decide,
+/// too.
+void Slides::move_out(const Sliding& of, double side, std::vector<double>& y) const {
+    constexpr double tiny = 1e-12;
+    const model::Joint& joint = mechanics_.system().joints[*of.joint];
+    double weights = 0, fast = 0;
+    for (const auto& [body, by] : joint.of) {
+        weights += by * by, fast += std::fabs(of.jump * by) * unit_ / mechanics_.own_inertia(body);
+    }
+    const double slip = mechanics_.velocity(*of.joint, y);
+    move_aside(of, side, y);
+    if (std::fabs(slip) > short_passage * fast) return;
+    const double change = side * std::max(tiny * fast, std::numeric_limits<double>::min()) - slip;
+    for (const auto& [body, by] : joint.of) y[mechanics_.bodies() + body] += by / weights * change;
+}
+
 /// If rates are given, evaluates both sides slightly later on the motion, so that a condition that was just crossed has
 /// its new decision.
 std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const std::vector<double>& rates) {
@@ -282,14 +338,7 @@ std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const s
         one_side[k] += away, other_side[k] -= away;
     };
     if (of.of_place) {
-        constexpr double tiny = 1e-12;  // beyond the rounding of angles, within a passage
-        for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
-            const double away =
-                std::copysign(tiny * (std::fabs(one_side[body]) + unit_ * std::fabs(one_side[n + body]) +
-                                      std::fabs(of.jump) * unit_ * unit_ / mechanics_.own_inertia(body)),
-                              by);
-            one_side[body] += away, other_side[body] -= away;
-        }
+        move_out(of, 1, one_side), move_out(of, -1, other_side);
     } else if (of.joint) {
         for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
             apart(n + body, by / mechanics_.system().bodies[body].inertia);
@@ -302,13 +351,12 @@ std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const s
     const std::size_t bits = mechanics_.system().named ? n : 1;
     const std::uint64_t angles = bits < 64 ? (std::uint64_t{1} << bits) - 1 : 0, all = ~std::uint64_t{0};
     const Moment own{t, here.side, one_side}, beyond{t, here.side, other_side};
-    const auto slides = [&](Piecewise& each) { return each.slide(own, beyond, of.of_place ? angles : all); };
-    if (!slides(*of.function)) return {};
+    if (!of.function->slide(own, beyond, of.of_place ? angles : all)) return {};
     of.along.clear();
     mechanics_.for_each_piecewise(here.t, [&](Piecewise& each) {
         if (each.is_friction() || &each == of.function || slide_of(each) != sliding_.end()) return;
         const Piecewise before = each;
-        if (slides(each) && is_same_surface(*of.function, each, here)) {
+        if (each.slide(own, beyond) && is_same_surface(of, each, here)) {
             of.along.push_back(&each);
         } else {
             each = before;
@@ -365,22 +413,43 @@ std::optional<Slides::Sides> Slides::meet(Sliding& of, const Now& now, const std
     return {};
 }
 
+/// Returns the rate of a slide's margin with the functions that slide evaluated as they are at y, while all others stay
+/// on their surfaces.
+double Slides::rate_beside(const Sliding& of, const Now& now, const std::vector<double>& y) {
+    const Moment at{now.t.hi, now.side(), y};
+    std::vector<Piecewise> before;
+    of.each([&](Piecewise& each) { before.push_back(each), each.let_go(); });
+    std::vector<const Sliding*> others;
+    for (const Sliding& each : sliding_) others.push_back(&each);
+    std::vector<std::size_t> all_of_them(others.size());
+    std::iota(all_of_them.begin(), all_of_them.end(), 0);
+    const Mixing all = mixing(std::move(others), at);
+    std::vector<double> rates = all.own;
+    keep(all, all_of_them, at, rates);
+    auto was = before.begin();
+    of.each([&](Piecewise& each) { each = *was++; });
+    return side_of(of, at, std::move(rates)).rate;
+}
+
 /// Returns whether passages of a place with the present speed become no longer, because the motion returns no faster
 /// than it leaves. Otherwise it leaves the place for good, however slowly.
 bool Slides::passes_fade(const Sliding& of, const Now& now, const Sides& sides) {
-    constexpr double rounded = 1e-12, short_passage = 1e-5;  // the second one in time units of the motion
+    constexpr double rounded = 1e-12, tiny = 1e-12;
     const std::size_t n = mechanics_.bodies();
     const double jump = sides.beyond.rate - sides.own.rate, speed = std::fabs(sides.own.speed);
     if (speed > short_passage * unit_ * std::min(-sides.own.rate, sides.beyond.rate)) return false;
-    double out = 1, back = 1;
-    for (const double way : {1.0, -1.0}) {
+    const double least = tiny * unit_ * std::min(-sides.own.rate, sides.beyond.rate);
+    const auto drives_back = [&](double side, double way) {
         std::vector<double> y = now.y;
         for (std::size_t k = n; k < 2 * n; ++k) {
-            y[k] += (way * speed - sides.own.speed) / jump * (sides.beyond.rates[k] - sides.own.rates[k]);
+            y[k] +=
+                (way * std::max(speed, least) - sides.own.speed) / jump * (sides.beyond.rates[k] - sides.own.rates[k]);
         }
-        const Sides there = both(of, {now.t.hi, now.side(), y});
-        (way > 0 ? out : back) *= -there.own.rate, (way > 0 ? back : out) *= there.beyond.rate;
-    }
+        move_aside(of, side, y);
+        return -side * rate_beside(of, now, y);
+    };
+    double out = 1, back = 1;
+    for (const double side : {1.0, -1.0}) out *= drives_back(side, side), back *= drives_back(side, -side);
     return back <= (1 + rounded) * out;
 }
 

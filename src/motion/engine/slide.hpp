@@ -118,8 +118,13 @@ private:
     [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
     [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
     [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
+    [[nodiscard]] std::size_t first_held(const Sliding& of) const;
+    [[nodiscard]] bool stands_still(const Sliding& of, const std::vector<double>& slopes, const Moment& at) const;
     [[nodiscard]] static std::vector<double> gradient(const Piecewise& function, const Moment& at);
-    [[nodiscard]] static bool is_same_surface(const Piecewise& one, const Piecewise& other, const Moment& at);
+    [[nodiscard]] bool is_same_surface(const Sliding& of, const Piecewise& other, const Moment& at) const;
+    void move_aside(const Sliding& of, double side, std::vector<double>& y) const;
+    void move_out(const Sliding& of, double side, std::vector<double>& y) const;
+    [[nodiscard]] double rate_beside(const Sliding& of, const Now& now, const std::vector<double>& y);
     [[nodiscard]] std::vector<std::pair<Piecewise*, Piecewise>> all_functions(double t);
     [[nodiscard]] std::vector<Sliding>::iterator slide_of(const Piecewise& function);
     /// Makes the functions slide that jump along the condition that differs between both sides, with the pieces
