@@ -813,3 +813,11 @@ test("what rests on the surface of a slide neither switches by rounding nor lets
     }
     equal(stuck.status, "end")
 end)
+
+test("a feedback that changes just beside a body at rest is decided where the body is", function()
+    local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
+    local run = system { I = 2, k = 0, C = 0.5, Rd = 0.5, spring = sign }:simulate {
+        M = function(_, x, v) return -0.5 * sign(x + v) end, theta0 = 0.1, t_end = 8,
+    }
+    near(run.theta[#run.t], 0, 1e-11)
+end)

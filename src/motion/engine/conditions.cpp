@@ -126,7 +126,7 @@ void Conditions::let_go(double t) {
 void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
     if (!any_) return;
     if (slides_.any()) slides_.follow(mode);
-    // The state is taken slightly later if a velocity leaves 0, because a condition may lose small digits, such as
+    // The state is taken slightly later if a velocity leaves 0, and a condition may have lost small digits, such as
     // those of floor(10 + velocity).
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
@@ -164,10 +164,36 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const bool just_crossed = has_just_crossed(function, of_leaving, at.t);
         const bool known = !forgotten_ && slides_.just_left(function, at.t);
         const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
+        if (of_leaving != 0 && !forgotten_ && decide_clearly(function, at, asked)) return;
         function.decide({t, at.side, y}, asked);
         if (asked != 0 && !forgotten_) decide_by_rate(function, at, asked);
     });
     forgotten_ = false;
+}
+
+/// Decides the conditions at this moment. Returns false if the margin of one that is asked may be zero by rounding.
+bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked) {
+    if (function.is_friction() || function.is_spring() || function.slides()) return false;
+    function.decide(at, asked);
+    std::vector<double> margins, beside, y(at.y.begin(), at.y.end());
+    function.margins(at, margins);
+    std::vector<double> rounded(margins.size(), 0);
+    constexpr double ulps = 1 + 4 * rounding;
+    const auto round = [&](double t) {
+        function.margins({t, at.side, y}, beside);
+        for (std::size_t c = 0; c < margins.size(); ++c) rounded[c] += std::fabs(beside[c] - margins[c]);
+    };
+    for (std::size_t k = 0; k < told_; ++k) {
+        y[k] *= ulps;
+        round(at.t);
+        y[k] = at.y[k];
+    }
+    round(at.t + 4 * rounding * (std::fabs(at.t) + unit_));
+    for (std::size_t c = 0; c < margins.size(); ++c) {
+        const bool is_asked = (function.conditions()[c].of & asked) != 0;
+        if (is_asked && !(std::fabs(margins[c]) > 16 * rounded[c])) return false;
+    }
+    return true;
 }
 
 /// Decides conditions anew that depend on a velocity that a contact holds or just lets go, if they pass zero right now

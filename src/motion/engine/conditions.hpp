@@ -86,6 +86,7 @@ public:
 
 private:
     void let_go(double t);
+    [[nodiscard]] bool decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked);
     void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
     bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
