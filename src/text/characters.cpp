@@ -244,18 +244,6 @@ std::size_t colour_at(std::string_view text) {
     }
 }
 
-/// The length in bytes of the first character, or 1 if it is not UTF-8.
-std::size_t first_bytes(std::string_view text) {
-    const auto lead = static_cast<unsigned char>(text.front());
-    const std::size_t bytes = lead < 0xC0 ? 1 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-    const auto goes_on = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; };
-    std::size_t found = 1;
-    while (found < std::min(bytes, text.size()) && goes_on(text[found])) {
-        ++found;
-    }
-    return found;
-}
-
 }  // namespace
 
 std::string harmless(std::string_view text) {
@@ -268,7 +256,7 @@ std::string harmless(std::string_view text) {
         if (bytes > 0) {
             result += text.substr(0, bytes);
         } else {
-            bytes = first_bytes(text);
+            bytes = first_of(text).bytes;
             result += displayable(text.substr(0, bytes));
         }
         text.remove_prefix(bytes);
@@ -276,39 +264,12 @@ std::string harmless(std::string_view text) {
     return result;
 }
 
-namespace {
-
-constexpr std::string_view no_letter = "\xEF\xBF\xBD";  // U+FFFD
-
-struct Letter {
-    std::size_t bytes = 0;  ///< 0 if it is not UTF-8
-    bool shown = false;     ///< whether it is neither a control character nor a direction mark
-};
-
-/// The first letter of the text.
-Letter letter_at(std::string_view text) {
-    utf8proc_int32_t code = 0;
-    const auto* const bytes = reinterpret_cast<const utf8proc_uint8_t*>(text.data());  // NOLINT: bytes are unsigned
-    const auto size = utf8proc_iterate(bytes, static_cast<utf8proc_ssize_t>(text.size()), &code);
-    if (size <= 0) return {};
-    const bool turns = (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
-    return {static_cast<std::size_t>(size), code >= 0xA0 && !turns};
-}
-
-}  // namespace
-
 std::string html(std::string_view text) {
     std::string result;
     result.reserve(text.size());
-    for (std::size_t at = 0; at < text.size(); ++at) {
-        const char c = text[at];
-        if (static_cast<unsigned char>(c) >= 0x80) {
-            const Letter letter = letter_at(text.substr(at));
-            result += letter.shown ? text.substr(at, letter.bytes) : no_letter;
-            at += std::max<std::size_t>(letter.bytes, 1) - 1;
-            continue;
-        }
-        switch (c) {
+    while (!text.empty()) {
+        const Character next = taken_from(text);
+        switch (next.code) {
             case '&':
                 result += "&amp;";
                 break;
@@ -325,10 +286,10 @@ std::string html(std::string_view text) {
                 result += "&#39;";
                 break;
             default:
-                if ((static_cast<unsigned char>(c) < 0x20 || c == '\x7F') && c != '\t' && c != '\n') {
-                    result += no_letter;
+                if (next.code == '\t' || next.code == '\n' || next.kind == CharacterKind::letter) {
+                    result.append(text.data() - next.bytes, next.bytes);
                 } else {
-                    result += c;
+                    result += next.kind == CharacterKind::blank ? " " : "\xEF\xBF\xBD";  // U+FFFD
                 }
         }
     }
