@@ -19,7 +19,6 @@ struct Constant {
         sum.add_constant(amplitude);
     }
     void delay_by(double) {}
-    std::string formula(double gain) const { return number(gain * amplitude); }
 };
 
 inline constexpr text::Option constant_options[] = {
@@ -44,7 +43,6 @@ struct Step {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at) sum.add_constant(amplitude);
     }
-    std::string formula(double gain) const { return number(gain * amplitude) + from_on(at); }
 };
 
 inline constexpr text::Option step_options[] = {
@@ -70,7 +68,6 @@ struct Pulse {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at && inside < at + width) sum.add_constant(amplitude);
     }
-    std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
 };
 
 inline constexpr text::Option pulse_options[] = {
@@ -106,11 +103,6 @@ struct Ramp {
         } else if (inside >= at) {
             sum.add_line(at, 0, slope);
         }
-    }
-    std::string formula(double gain) const {
-        const std::string rise = factor(gain * slope) + since(at);
-        return duration == never ? rise + from_on(at)
-                                 : rise + between(at, at + duration) + ", then " + number(gain * slope * duration);
     }
 };
 
@@ -150,10 +142,6 @@ struct Square {
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         sum.add_constant(value(inside));
-    }
-    std::string formula(double gain) const {
-        return wave("square wave", gain * amplitude, period, at) +
-               (duty == 0.5 ? "" : ", positive for " + number(duty) + " of it");
     }
 };
 
@@ -198,7 +186,6 @@ struct Sawtooth {
         const Cycle c = cycle(inside);
         sum.add_line(c.start, -amplitude, c.end > c.start ? 2 * amplitude / (c.end - c.start) : 0);
     }
-    std::string formula(double gain) const { return wave("sawtooth", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option sawtooth_options[] = {
@@ -244,7 +231,6 @@ struct Triangle {
         const double first = piece.falling ? amplitude : -amplitude;
         sum.add_line(piece.start, first, piece.end > piece.start ? -2 * first / (piece.end - piece.start) : 0);
     }
-    std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option triangle_options[] = {

@@ -94,7 +94,6 @@ struct Polyline {
     }
     void delay_by(double d);
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    std::string formula(double gain) const;
 
 private:
     bool holds() const { return samples->interpolation == Interpolation::hold; }
