@@ -58,8 +58,8 @@ Aside aside(std::string_view line) {
 }
 
 /// Reminds of Ctrl-C if a line within a chunk looks like an attempt to leave.
-void remind_of_cancel(const Chunk& chunk, Aside found) {
-    say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
+void remind_of_cancel(Aside found) {
+    say_notice(fmt::format("the input goes on; Ctrl-C cancels it{}",
                            found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
 }
 
@@ -68,8 +68,7 @@ void remind_of_cancel(const Chunk& chunk, Aside found) {
 TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        const std::string cue = chunk.waits + "; Ctrl-C cancels it";
-        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text, cue);
+        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
         if (more.reading == Reading::end) {
             say("\n");
             chunk.result = Compiled::wrong;
@@ -85,7 +84,7 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
         const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
         const Aside found = in_text ? Aside::none : aside(more.text);
         if (found != Aside::none) {
-            remind_of_cancel(chunk, found);
+            remind_of_cancel(found);
             if (found != Aside::blank) {
                 continue;
             }
@@ -97,23 +96,18 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
     return input;
 }
 
-void remember(Session& session, const std::string& input) {
-    session.editor.remember(input);
-    if (!is_command(input)) session.inputs.push_back(input);
-}
-
 /// Executes an input, reading further lines of a chunk if needed.
 Reading take(Session& session, TypedLine input, bool copied) {
     lua_State* L = session.L;
     if (is_command(input.text)) {
-        remember(session, input.text);
+        session.editor.remember(input.text);
         run_command(session, input.text);
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
     const bool incomplete = chunk.result == Compiled::incomplete;
-    if (const std::string notice = incomplete ? unfinished_notice(L, input.text) : ""; !notice.empty()) {
-        remember(session, input.text);
+    if (const std::string notice = incomplete ? unfinished_notice(input.text) : ""; !notice.empty()) {
+        session.editor.remember(input.text);
         say_notice(notice);
         return Reading::line;
     }
@@ -121,7 +115,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
     if (input.reading == Reading::interrupted) {
         return input.reading;
     }
-    remember(session, input.text);
+    session.editor.remember(input.text);
     if (chunk.result == Compiled::ready) {
         run_chunk(session, chunk, input.text);
     } else {
@@ -203,8 +197,7 @@ bool run_text(Session& session, const std::string& text) {
         reject(session, text);
     }
     if (chunk.result == Compiled::incomplete) {  // no further line can complete it
-        const std::string notice = unfinished_notice(session.L, text);
-        say_notice(notice.empty() ? chunk.waits : notice);
+        say_notice(unfinished_notice(text));
     }
     const bool fine = ready && run_chunk(session, chunk, text);
     lua_settop(session.L, 0);

@@ -46,8 +46,7 @@ struct Session {
     LineEditor editor;
     Record record;
     lua_CFunction show_values = print_values;
-    std::vector<std::string> inputs;  ///< without commands, for :history and :edit
-    bool leaving = false;             ///< set by :quit
+    bool leaving = false;  ///< set by :quit
 };
 
 /// Compiles and runs a complete text as at the prompt. Returns false after an error, which has been reported.
