@@ -345,6 +345,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         const double earlier = last.t < here.t ? last.t : last.earlier;
         // A motion that crosses back at the same instant stands on the surface.
         const double since = back && last.t == here.t ? 0 : here.t - earlier;
+        if (here.t > last.t) crossed.since = std::min(crossed.since, here.t - last.t);
         chatter.crossed(back);
         last_[{function, step}] = {rises, here.t, within_, earlier};
         crossed_[function] = crossed_at_ = here.t;

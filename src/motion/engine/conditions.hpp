@@ -58,6 +58,7 @@ public:
         Slides::Changes changes{};
         double work = 0;  ///< work done by the first sliding load when the velocities were moved onto the condition
         bool endless = false;
+        double since = model::never;  ///< shortest time since an earlier crossing of one of these conditions
         /// A condition of a load that was crossed back and forth without a slide.
         struct Back {
             Piecewise* function;

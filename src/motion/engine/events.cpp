@@ -51,6 +51,12 @@ bool Engine::cross(const Ending& ending) {
     pace_.go_on();
     const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
     result_.jumps += crossed.count;
+    // A motion that crosses a condition again and again does so at similar intervals.
+    constexpr double few = 2;
+    if (crossed.since < model::never) {
+        const double half = few * crossed.since;
+        if (half < pace_.h) pace_.make_again(half, pace_.h);
+    }
     if (crossed.work != 0)
         recorder_->add_jump(now_.t.hi, crossed.changes.slides.front().joint.value_or(0), {.input = crossed.work});
     for (const SlideChange& change : crossed.changes.slides) recorder_->tell_slide(now_, change);
