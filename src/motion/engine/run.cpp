@@ -165,7 +165,8 @@ bool Engine::advance() {
     if (mechanics_.nonlinear()) sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
-    if (ending.by == By::condition && (ends_before(ending.x) || comes_early(ending))) return true;
+    if (ending.by == By::condition && ends_before(ending.x)) return true;
+    if (ending.by != By::nobody && conditions_->any() && comes_early(ending)) return true;
     if (ending.by == By::condition && problem_.step == 0 &&
         !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
         again(Flow::Attempt::shorten);
