@@ -400,4 +400,25 @@ test("a mass that friction holds longer and longer adheres in the limit", functi
     end
 end)
 
+test("a mass that sticks to a belt moves with it, up to a wall that holds it", function()
+    local block = { I = .1, k = 0, Rd = .5, Re = 1 }
+    local s = system(block):steady { belt = .1 }
+    equal(s.status, "steady")
+    assert(s:explain():find("constant velocity 0.1", 1, true))
+    for _, M in ipairs { 0, excitation.harmonic { amplitude = .2, omega = 1 } } do
+        local named = system { bodies = { b = block } }:steady { belt = { b = .1 }, M = { b = M } }
+        equal(named.status, "steady")
+        equal(named.b.status, "steady")
+    end
+    local hard, elastic = { upper = .5, restitution = 0 }, { upper = .5, stiffness = 50, damping = 1 }
+    for _, stop in ipairs { { hard, .5 }, { elastic, .51 } } do
+        local walls, place = table.unpack(stop)
+        block.walls = walls
+        local rest = system(block):steady { belt = .1 }
+        equal(rest.status, "rest")
+        near(rest.rest.upper, place, 1e-9)
+        near(system(block):simulate { belt = .1, t_end = 100 }:at(100), place, 1e-9)
+    end
+end)
+
 finish()
