@@ -14,8 +14,9 @@ bool Engine::handle(const Ending& ending) {
     const std::size_t j = ending.which;
     switch (ending.by) {
         case By::nobody:
-        case By::kink:
             return true;
+        case By::kink:
+            return goes_on();
         case By::stays:
             return decide(true);
         case By::slip:
