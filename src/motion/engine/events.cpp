@@ -98,6 +98,7 @@ bool Engine::release(const Ending& ending) {
     std::vector<Slipping>& slid = scratch_.slid;
     leant = now_.mode.leans, slid = now_.mode.friction;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
+    if (!begun()) recorder_->begin_released(now_.mode);
     bool same = now_.mode.leans == leant;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
         const Slipping &is = now_.mode.friction[i], &was = slid[i];
