@@ -337,10 +337,11 @@ std::vector<double> Engine::catch_freewheels(bool at_start) {
             lost = stop_together(stopped);
             stopped.assign(joints, 0);
         } else {
-            const double before = mechanics_.velocity(worst, now_.y);
+            const double before = mechanics_.velocity(worst, now_.y), energy = kinetic_energy();
             const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
             Impulses::apply(thrown, after, now_);
             lost = (before - after) * (before + after) / thrown.lightness / 2;
+            if (!at_start) add_work_of_moved(worst, energy, lost);
             stopped[worst] = 1;
         }
         if (!at_start || !problem_.system.has_moved()) recorder_->add_jump(now_.t.hi, worst, {.impacts = lost});
