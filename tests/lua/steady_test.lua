@@ -421,4 +421,9 @@ test("a mass that sticks to a belt moves with it, up to a wall that holds it", f
     end
 end)
 
+test("a rest at 0, searched from there, is compared with starts of a size", function()
+    local undamped = system { I = 1, k = 1, C = .1 }:steady { M = function(t, theta, velocity) return .1 * velocity end }
+    for _, other in ipairs(undamped.others) do assert(other.amplitude > .01, tostring(other)) end
+end)
+
 finish()
