@@ -357,7 +357,12 @@ private:
             add(" at the wall");
         } else if (has_torque) {
             const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
-            add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
+            const double Re = limit(torque);
+            if (!first.stuck && std::fabs(torque) <= Re) {  // at its limit it moves off where the torque increases
+                add(" and moved off because |{}| exceeded Re = {:.5g}", pull_name(), Re);
+            } else {
+                add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
+            }
         }
         if (first.stuck && first.ended_by && !(first.lasts() > 0)) {
             add("; {} at once.", slip(*first.ended_by, has_torque));

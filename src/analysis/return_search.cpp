@@ -10,6 +10,7 @@
 #include "analysis/returns.hpp"
 #include "analysis/steady_facts.hpp"
 #include "model/controller.hpp"
+#include "motion/engine/modes.hpp"
 
 namespace dinal::analysis {
 
@@ -82,6 +83,10 @@ private:
     std::optional<VectorXd> complete_period(const FullState& from, motion::Run run, double period);
     /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
     void complete_rest(const motion::Run& run, bool stands);
+    [[nodiscard]] bool grows_beside(const FullState& rest, double t) const;
+    [[nodiscard]] bool is_moving(const FullState& now) const {
+        return now.y.segment(n(), n()).cwiseAbs().maxCoeff() > 1e-9 * largest_;
+    }
 
     const SteadyQuestion& question() const { return runs_.question(); }
     Eigen::Index n() const { return runs_.bodies(); }
@@ -441,6 +446,7 @@ bool ReturnSearch::rests(const motion::Run& run, const VectorXd& range, const Ve
     }
     const bool rides = n() == 1 && still_states && run.motion_at_stop == model::Motion::stuck && run.events.empty() &&
                        !(runs_.natural_period() > 0) && runs_.system().joints.front().spring.none() &&
+                       runs_.system().joints.front().any_walls() == nullptr &&
                        !question().drive.loads.front().has_feedback();
     if (stands || still || rides) note_rest(run, stands);
     return stands || still || rides;
@@ -549,13 +555,33 @@ std::optional<VectorXd> ReturnSearch::complete_settled(const motion::Run& so_far
     return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }
 
+/// Returns whether a small disturbance of a rest grows; false if it has no modes, as at a wall or with a memory.
+bool ReturnSearch::grows_beside(const FullState& rest, double t) const {
+    const auto& loads = question().drive.loads;
+    if (std::ranges::any_of(loads, [](const model::Excitation& load) { return model::has_memory(load); })) return false;
+    const std::vector<double> y(rest.y.begin(), rest.y.end());
+    const auto is_at_wall = [&](const model::Joint& joint) {
+        constexpr double near = 1e-9;
+        const double angle = joint.sum(y);
+        return joint.walls && !(angle > joint.walls->lower + near && angle < joint.walls->upper - near);
+    };
+    if (std::ranges::any_of(runs_.system().joints, is_at_wall)) return false;
+    const auto modes = engine::modes_beside(runs_.system(), runs_.from(rest, t));
+    if (!modes) return false;
+    constexpr double marginal = 1e-7;  // relative accuracy of the eigenvalues
+    double fastest = 0, growth = 0;
+    for (const engine::EigenMode& mode : modes.value()) {
+        fastest = std::max(fastest, std::abs(mode.value)), growth = std::max(growth, mode.value.real());
+    }
+    return growth > marginal * fastest;
+}
+
 void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
     const FullState now = Runs::at_stop(run);
-    const auto velocity = now.y.segment(n(), n());
-    const bool moves = velocity.cwiseAbs().maxCoeff() > 1e-9 * largest_;
+    if (!stands && grows_beside(now, run.t_stop)) facts_.stable = false;
+    const bool moves = is_moving(now);
     const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
-    if (moves && chart_.any_goes_round()) facts_.status = SteadyStatus::steady;
-    if (moves && stuck) facts_.status = SteadyStatus::adheres;  // it adheres to the belt and moves with it
+    if (moves && (stuck || chart_.any_goes_round())) facts_.status = SteadyStatus::steady;  // a belt may carry it
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
     if (question().settles < 0)
@@ -568,10 +594,10 @@ std::optional<VectorXd> ReturnSearch::complete_period(const FullState& from, mot
     const Reach reach = reach_of_rows(run, chart_);
     constexpr double nothing = 1e-11;
     const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
-    const bool forced = question().repeats.period > 0;
+    const bool forced = question().repeats.period > 0, rotates = !moves && is_moving(from);
     if (!moves && !forced && question().settles < 0) return {};  // not a cycle: a further run decides how it ends
     facts_.outcome = run.outcome;
-    facts_.status = moves ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
+    facts_.status = moves || rotates ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;
     facts_.period = moves || forced ? period : 0;
     facts_.bodies = bodies_of(run, chart_, reach);
     const std::vector<double> middle = run.left->history->at(run.t_start + period / 2);

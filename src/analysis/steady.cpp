@@ -122,15 +122,19 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
 
 namespace {
 
+// A rest at 0, searched from 0, does not tell how large other motions are.
+constexpr double smallest_size = 1e-200, untold_size = 1;
+
 /// Other motions of one plain body.
 std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
     if (!known.is_found() || known.unique.value_or(false) || family) return {};
-    double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second), 1e-300});
+    double size = std::max({std::fabs(known.low), std::fabs(known.high), std::fabs(known.rest.second)});
     // At rest only the initial state indicates the size of other motions.
     if (known.stands())
         size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
+    if (!(size > smallest_size)) size = untold_size;
     const bool free = !(question.body.stiffness() > 0) && question.body.spring().none();
     const auto alike = [size, free](const SteadyMotion& a, const SteadyMotion& b) {
         return are_alike(a, b, size, free);
@@ -145,7 +149,7 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
     if (!known.is_found() || alone) return {};
     const std::size_t n = question.system->bodies.size();
     const auto farthest = [](const BodyMotion& body) { return std::max(std::fabs(body.high), std::fabs(body.low)); };
-    double size = 1e-300;
+    double size = 0;
     for (std::size_t i = 0; i < n; ++i) {
         const BodyMotion& body = known.bodies[i];
         const double speed = known.period == 0 ? std::fabs(body.turned) : 0;
@@ -153,6 +157,7 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
         if (!known.stands()) continue;
         size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
     }
+    if (!(size > smallest_size)) size = untold_size;
     const auto alike = [&](const SteadyMotion& a, const SteadyMotion& b) {
         if (a.stands() && b.stands()) return true;
         if (a.status != b.status) return false;

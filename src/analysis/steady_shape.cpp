@@ -204,7 +204,7 @@ public:
         switch (motion_.status) {
             case SteadyStatus::steady:
                 if (motion_.period == 0) {
-                    several() ? say("All bodies rotate at constant speed.")
+                    several() ? tell_rotations()
                               : say("It moves at the constant velocity {:.6g}.", motion_.start.velocity);
                     break;
                 }
@@ -223,6 +223,11 @@ public:
                     number(motion_.rest.first), number(motion_.rest.second));
                 break;
             case SteadyStatus::rest:
+                if (!motion_.stable) {
+                    say("There is a rest{}, but it is unstable: a small disturbance grows.",
+                        several() ? "" : " at theta = " + number(motion_.low));
+                    break;
+                }
                 if (several()) {
                     say("The motion dies out: all bodies come to rest.");
                     break;
@@ -293,6 +298,17 @@ private:
                 motion_.stops == 1 ? "once" : fmt::format("{} times", motion_.stops), text::percent(motion_.stuck));
         }
         if (motion_.symmetric) say("The motion is symmetric: theta(t + T/2) = -theta(t).");
+    }
+    void tell_rotations() {
+        if (std::ranges::all_of(motion_.bodies, [](const BodyMotion& body) { return body.turned != 0; })) {
+            say("All bodies rotate at constant speed.");
+            return;
+        }
+        for (std::size_t i = 0; i < names_.size(); ++i) {
+            const double velocity = motion_.bodies[i].turned;
+            if (velocity != 0) say("{} moves at the constant velocity {:.6g}.", names_[i], velocity);
+            if (velocity == 0) say("{} is at rest.", names_[i]);
+        }
     }
     void tell_bodies() {
         for (std::size_t i = 0; i < names_.size(); ++i) {

@@ -223,8 +223,8 @@ std::string steady_summary(lua_State*, const SteadyHandle& handle) {
     };
     if (s.of_all() && is_found(s)) {
         if (m.status == SteadyStatus::adheres) return "adheres: nothing moves";
-        if (m.status == SteadyStatus::rest) return "rest: the motion ends";
-        return m.period == 0 ? "steady: all bodies rotate at constant speed"
+        if (m.status == SteadyStatus::rest) return m.stable ? "rest: the motion ends" : "rest, unstable";
+        return m.period == 0 ? "steady: all bodies keep their velocities"
                              : fmt::format("steady: period {}, {}", number(m.period, in.t),
                                            text::counted(s.question.system->bodies.size(), "body"));
     }
@@ -245,7 +245,8 @@ std::string steady_summary(lua_State*, const SteadyHandle& handle) {
             return fmt::format("adheres: rests anywhere from theta = {:.6g} to {}", m.rest.first,
                                number(m.rest.second, in.theta));
         case SteadyStatus::rest:
-            return fmt::format("rest: the motion ends at theta = {}", number(m.low, in.theta));
+            return fmt::format("{} at theta = {}", m.stable ? "rest: the motion ends" : "rest, unstable,",
+                               number(m.low, in.theta));
         case SteadyStatus::grows:
             if (s.question.is_timeless() || std::isinf(m.growth)) return "grows: without bound";
             return fmt::format("grows: by {} in each period of M", number(m.growth, in.theta));

@@ -177,4 +177,22 @@ test("the story has the numbers of a contact that is open at first, of the harde
     has_not(told(uneven), "2 Rd/k") -- by which the extremes of one Rd shrink
 end)
 
+test("a mass that is at the limit of friction at the start, and pulled off at once, did not stick", function()
+    for _, method in ipairs { integrator.spectral {}, integrator.dopri5 { tolerance = 1e-9 } } do
+        local M = excitation.polynomial { coefficients = { .2, .1 } }
+        local run = system { I = 1, k = 1, Rd = .2 }:simulate { M = M, t_end = 6, integrator = method }
+        local text = run:explain():gsub("%s+", " ")
+        assert(text:find("with velocity 0 and moved off because |M - k theta| exceeded Re = 0.2.", 1, true), text)
+        assert(text:find("It moved in one direction all the time.", 1, true), text)
+        local energy, dry = run:energy(), 0
+        for _, half in ipairs(energy.half_cycles) do dry = dry + half.dry end
+        near(dry, energy.total.dry, 1e-12)
+    end
+    -- A base that begins to pull just then.
+    local shaken = system { I = 1, k = 1, Rd = .2 }:simulate { base = excitation.harmonic { amplitude = .5, omega = 1 }, theta0 = .2, t_end = 10 }
+    local dry = 0
+    for _, half in ipairs(shaken:energy().half_cycles) do dry = dry + half.dry end
+    near(dry, shaken:energy().total.dry, 1e-12)
+end)
+
 finish()

@@ -131,4 +131,22 @@ test("the foot of a narrow peak of an angle, whose rounding is that of a great e
     end
 end)
 
+test("the impulse of a moved body at a stop is work of that body", function()
+    -- A mass flies at 1 towards an anvil that comes at 0.5: at restitution e it leaves with 0.5 + 1.5 e.
+    for _, e in ipairs { 0, .5, 1 } do
+        local rig = system { bodies = { a = { I = 2 }, anvil = { velocity = .5 } },
+            links = { gap = { "a", "anvil", walls = { lower = 0, restitution = e } } } }
+        local run = rig:simulate { theta0 = { a = 1 }, velocity0 = { a = -1 }, t_end = 1 }
+        local after = .5 + 1.5 * e
+        near(select(2, run:at(1)).a, after, 1e-12)
+        local energy = run:energy()
+        near(energy.total.input, 2 * (after + 1) * .5, 1e-12)  -- the impulse times the velocity of the anvil
+        near(energy.total.impacts, (1 - e ^ 2) * 1.5 ^ 2, 1e-12)
+        near(energy.total.error, 0, 1e-12)
+    end
+    local shaken = system { bodies = { a = { I = .5, k = 1 }, b = { velocity = function(t) return .2 * math.cos(t) end } },
+        links = { l = { "a", "b", ratio = -1, walls = { lower = -.2, upper = .1, restitution = .5 } } } }
+    near(shaken:simulate { velocity0 = { a = 1 }, t_end = 13 }:energy().total.error, 0, 1e-9)
+end)
+
 finish()

@@ -131,4 +131,22 @@ test("a contact that closes beside a loop of contacts that hold stays at rest", 
     equal(run.c.theta:abs():max(), 0)
 end)
 
+test("a contact whose load ends together with a step of M opens once, and the run goes on", function()
+    local sys = system { I = 1, k = 1, Rd = .5, normal = function(t) return math.max(0, math.sin(t)) end }
+    for _, at in ipairs { math.pi, math.pi - 1e-15, math.pi + 1e-15 } do
+        for _, method in ipairs { integrator.spectral {}, integrator.dopri5 { tolerance = 1e-10 } } do
+            local M = excitation.step { amplitude = .2, at = at }
+            local run = sys:simulate { M = M, t_end = 5, integrator = method }
+            equal(run.t_end, 5)
+            equal(#run.events, 1)
+            equal(run.events.kind[1], "open")
+            near(run.events.t[1], math.pi, 1e-12)
+            near(run:at(5), .2 * (1 - math.cos(5 - math.pi)), 1e-8)
+        end
+    end
+    local rig = system { bodies = { b = { I = 1, Rd = .5, k = .2 }, c = { I = .2, Rd = .1, k = 2 } },
+        links = { m = { "b", "c", Rd = .1, normal = function(t) return math.max(0, math.sin(t)) end } } }
+    equal(rig:simulate { M = { b = excitation.square { amplitude = .2, omega = 2 } }, t_end = 20 }.t_end, 20)
+end)
+
 finish()

@@ -400,4 +400,57 @@ test("a mass that friction holds longer and longer adheres in the limit", functi
     end
 end)
 
+test("a mass that sticks to a belt moves with it, up to a wall that holds it", function()
+    local block = { I = .1, k = 0, Rd = .5, Re = 1 }
+    local s = system(block):steady { belt = .1 }
+    equal(s.status, "steady")
+    assert(s:explain():find("constant velocity 0.1", 1, true))
+    for _, M in ipairs { 0, excitation.harmonic { amplitude = .2, omega = 1 } } do
+        local named = system { bodies = { b = block } }:steady { belt = { b = .1 }, M = { b = M } }
+        equal(named.status, "steady")
+        equal(named.b.status, "steady")
+    end
+    local hard, elastic = { upper = .5, restitution = 0 }, { upper = .5, stiffness = 50, damping = 1 }
+    for _, stop in ipairs { { hard, .5 }, { elastic, .51 } } do
+        local walls, place = table.unpack(stop)
+        block.walls = walls
+        local rest = system(block):steady { belt = .1 }
+        equal(rest.status, "rest")
+        near(rest.rest.upper, place, 1e-9)
+        near(system(block):simulate { belt = .1, t_end = 100 }:at(100), place, 1e-9)
+    end
+end)
+
+test("a rest is stable only where no small disturbance grows", function()
+    local block = { I = 1, k = 1 }
+    local function grows(t, theta, velocity) return .2 * (1 - theta ^ 2) * velocity end
+    local named = function(t, theta, velocity) return grows(t, theta.b, velocity.b) end
+    local s, of_bodies = system(block):steady { M = grows }, system { bodies = { b = block } }:steady { M = { b = named } }
+    for _, unstable in ipairs { s, of_bodies } do
+        equal(unstable.status, "rest")
+        equal(unstable.stable, false)
+        assert(unstable:explain():find("unstable: a small disturbance grows", 1, true))
+    end
+    near(s.others[1].amplitude, 2.0004, 1e-4)
+    equal(system { I = 1, k = 1, C = .3 }:steady { M = grows }.stable, true)
+    -- Sliding evenly on a belt, where friction falls with the speed by more than C, and by less.
+    local law = friction.stribeck { Rd = .5, Re = 1, speed = .3 }
+    for _, C in ipairs { .01, 1 } do
+        local sliding = system { I = 1, k = 1, C = C, friction = law }
+        local steady = sliding:steady { belt = .4, theta0 = law:torque(.4), velocity0 = 0 }
+        local slope = (law:torque(.4 + 1e-6) - law:torque(.4 - 1e-6)) / 2e-6
+        if steady.status == "rest" then equal(steady.stable, C + slope > 0) end
+    end
+end)
+
+test("a rest at 0, searched from there, is compared with starts of a size", function()
+    local undamped = system { I = 1, k = 1, C = .1 }:steady { M = function(t, theta, velocity) return .1 * velocity end }
+    for _, other in ipairs(undamped.others) do assert(other.amplitude > .01, tostring(other)) end
+end)
+
+test("what rotates and what rests is said body by body", function()
+    local s = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1, k = 1, Rd = .1 } } }:steady { M = { a = 2 } }
+    assert(s:explain():find("a moves at the constant velocity 2. b is at rest.", 1, true), s:explain())
+end)
+
 finish()

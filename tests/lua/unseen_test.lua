@@ -195,6 +195,27 @@ test("a very short push, over a ten millionth of the way, changes the energy by 
     near(left_over(.5, .3667, 1.3e-7, 7.4, "M"), 0, 5e-8)
 end)
 
+test("what turns in a window as narrow as a ten millionth of the way leaves it as fast as it came", function()
+    local function energy_off(w, event)
+        local from, push = .7, 3 / w
+        local function M(t, theta) return theta > from and theta < from + w and push or 0 end
+        local events = event and { { when = function(t, theta) return theta - from - event * w end } }
+        local sys = system { I = .5, k = .2, Rd = .1 }
+        local run = sys:simulate { M = M, theta0 = 1, velocity0 = -1, t_end = 1.5, events = events }
+        local deepest = math.huge
+        for i = 1, #run.events do deepest = math.min(deepest, run.events.theta[i]) end
+        assert(deepest > from and deepest < from + w)
+        local theta, velocity = run:at(1.5)
+        local way = 1 - deepest + theta - deepest
+        return (.5 * velocity ^ 2 + .2 * theta ^ 2) / 2 - (.5 + .2) / 2 + .1 * way
+    end
+    for _ = 1, 20 do
+        local w = 10 ^ lot(-7, -3)
+        local off, with_event = energy_off(w), energy_off(w, .95)
+        assert(math.abs(off) < 5e-8 and math.abs(with_event) < 5e-8, ("w %.17g: %g, %g"):format(w, off, with_event))
+    end
+end)
+
 test("a rise from almost zero to a peak is not a native term", function()
     local swings = system { I = 1, k = 1 }
     local function after(M) return select(2, swings:simulate { M = M, t_end = 3, dt = 1 }:at(3)) end

@@ -87,6 +87,7 @@ private:
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);
     double kinetic_energy() const;
+    void add_work_of_moved(std::size_t joint, double before, double lost);
 
     // The length of the next stretch (choose.cpp).
     void set_pace();

@@ -14,8 +14,9 @@ bool Engine::handle(const Ending& ending) {
     const std::size_t j = ending.which;
     switch (ending.by) {
         case By::nobody:
-        case By::kink:
             return true;
+        case By::kink:
+            return goes_on();
         case By::stays:
             return decide(true);
         case By::slip:
@@ -103,6 +104,7 @@ bool Engine::release(const Ending& ending) {
     std::vector<Slipping>& slid = scratch_.slid;
     leant = now_.mode.leans, slid = now_.mode.friction;
     if (!decide(true, Cause::Released{j, static_cast<Motion>(ending.side)})) return false;
+    if (!begun()) recorder_->begin_released(now_.mode);
     bool same = now_.mode.leans == leant;
     for (std::size_t i = 0; i < mechanics_.joints() && same; ++i) {
         const Slipping &is = now_.mode.friction[i], &was = slid[i];
@@ -340,10 +342,11 @@ std::vector<double> Engine::catch_freewheels(bool at_start) {
             lost = stop_together(stopped);
             stopped.assign(joints, 0);
         } else {
-            const double before = mechanics_.velocity(worst, now_.y);
+            const double before = mechanics_.velocity(worst, now_.y), energy = kinetic_energy();
             const double after = now_.mode.leans[worst] != 0 ? 0 : mechanics_.belt(worst, now_.t.hi, now_.side());
             Impulses::apply(thrown, after, now_);
             lost = (before - after) * (before + after) / thrown.lightness / 2;
+            if (!at_start) add_work_of_moved(worst, energy, lost);
             stopped[worst] = 1;
         }
         if (!at_start || !problem_.system.has_moved()) recorder_->add_jump(now_.t.hi, worst, {.impacts = lost});

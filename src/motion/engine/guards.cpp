@@ -396,8 +396,10 @@ void Guards::watch_normal(std::size_t joint) {
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
         const auto exact = segment_.anywhere(pressing, point_);
-        see(first_true([&](double x) { return exact(x) > 0; },
-                       cheb::nodes[static_cast<std::size_t>(presses - values.begin())]));
+        const double x = first_true([&](double place) { return exact(place) > 0; },
+                                    cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
+        // A load that is only rounding at the time at which it opened the contact does not close it.
+        if (segment_.time(x) > now_.t.hi) see(x);
         return;
     }
     Half& half = of_.normal_halves[joint];

@@ -79,6 +79,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     const bool fades = before > 0 && before < nothing;
     const Impulses::Thrown thrown = impulses_.along(joint, now_);
     const auto velocity = [&](double relative) { Impulses::apply(thrown, relative, now_); };
+    const double energy = kinetic_energy();
     velocity(-wall * e * before);
     conditions_->forget();
     bool rests = fades || e * before == 0;
@@ -95,7 +96,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         rest = bounces->all < model::never ? bounces->all : bounces->once;
     }
     const double after = rests ? 0 : e * before;
-    recorder_->add_jump(now_.t.hi, joint, {.impacts = (before - after) * (before + after) / thrown.lightness / 2});
+    const double lost = (before - after) * (before + after) / thrown.lightness / 2;
+    recorder_->add_jump(now_.t.hi, joint, {.impacts = lost});
     breaks_.echo(now_.t.hi, 1);
     for (std::size_t i = 0; i < n(); ++i) {
         if (thrown.velocities[i].second != 0) recorder_->head(i, rests ? 0 : now_.y[n() + i]);
@@ -103,8 +105,9 @@ bool Engine::hit(std::size_t joint, int wall) {
     if (rests) {
         velocity(0);
         conditions_->forget();
-        wait(rest);
     }
+    add_work_of_moved(joint, energy, lost);
+    if (rests) wait(rest);
     leave_walls(stop_row(joint, wall, fades));
     if (rests) {
         now_.mode.leans[joint] = wall;

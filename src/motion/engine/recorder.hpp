@@ -69,6 +69,8 @@ public:
 
     // Beginning and end.
     void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
+    /// Notes that contacts were released at the very start, of which no event tells.
+    void begin_released(const Mode& mode) { left_->begun = mode; }
     void finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry);
 
 private:

@@ -165,7 +165,8 @@ bool Engine::advance() {
     if (mechanics_.nonlinear()) sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
-    if (ending.by == By::condition && (ends_before(ending.x) || comes_early(ending))) return true;
+    if (ending.by == By::condition && ends_before(ending.x)) return true;
+    if (ending.by != By::nobody && conditions_->any() && comes_early(ending)) return true;
     if (ending.by == By::condition && problem_.step == 0 &&
         !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
         again(Flow::Attempt::shorten);
@@ -443,6 +444,19 @@ double Engine::kinetic_energy() const {
         sum += mechanics_.own_inertia(i) * now_.y[n() + i] * now_.y[n() + i] / 2;
     }
     return sum;
+}
+
+/// Counts as input of a moved body what its impulse has added at an impact of the joint: the change of the kinetic
+/// energy from `before`, and what the impact `lost`.
+void Engine::add_work_of_moved(std::size_t joint, double before, double lost) {
+    if (problem_.hidden == 0) return;
+    const double now = kinetic_energy(), work = now - before + lost;
+    if (!(std::fabs(work) > 64 * rounding * (now + before + lost))) return;
+    std::size_t body = moved_body(told_joints());
+    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+        if (joint_at(joint).is_on(moved_body(j))) body = moved_body(j);
+    }
+    recorder_->add_jump(now_.t.hi, body, {.input = work});
 }
 
 /// Sets the present to x of the stretch. The rounding errors of the angles are kept, as they matter near a wall.
