@@ -41,11 +41,20 @@ std::vector<std::string> member_names(lua_State* L);
 /// `assignments` also "'rk4' is nil; did you mean 'integrator.rk4'?" for x = rk4, if there is a hint.
 std::string nil_value(lua_State* L, lua_Debug* frame, std::string_view text, bool assignments);
 
+// Methods called as functions, and missing elements: max(v) for v:max(), and the length of a list.
+
+/// The method of an argument that was called as a function: "; did you mean 'run.theta:max()'?", or "". Call while the
+/// call is still on the stack.
+std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement);
+
+/// For an index beyond a list: "; 'run.events' has 6 elements, and n is 7", and the word to be marked.
+Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
+
 // Habits from other languages and decimal commas, with the Lua equivalents.
 
 /// The end of a sentence about a chunk that does not compile, "; comparing is ==", or "". `statement` contains the
 /// error.
-std::string syntax_habit(const lua::SyntaxMessage& message, std::string_view statement);
+std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
 /// When words and signs of other languages are looked for: in a chunk that does not compile (first, last if nothing
 /// else explains the error, or between two expressions); in a running chunk, also around a number, name or function of

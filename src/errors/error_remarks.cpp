@@ -118,6 +118,42 @@ std::optional<SourceText> source_running(lua_State* L, std::string_view chunk) {
 
 namespace {
 
+// Remarks on a value alone on a line of a script, which only the prompt accepts.
+
+bool compiles(lua_State* L, const std::string& text) {
+    const bool good = luaL_loadbufferx(L, text.data(), text.size(), "=part", "t") == LUA_OK;
+    lua_pop(L, 1);
+    return good;
+}
+
+/// The line without a final comment and semicolons.
+std::string_view code_of(std::string_view line) {
+    std::size_t end = 0;
+    for (const lua::Token& token : lua::tokens(line)) {
+        if (token.kind != lua::TokenKind::comment && !token.is(";")) end = token.end();
+    }
+    return text::trimmed(line.substr(0, end), " \t");
+}
+
+bool is_value(lua_State* L, std::string_view code) {
+    return !code.empty() && compiles(L, "return " + std::string(code)) && !compiles(L, std::string(code));
+}
+
+/// "; a value alone is not a statement: print(6*7) shows it", for the error's line or the one before; or "".
+std::string bare_value(lua_State* L, const SourceText& source, int line, const lua::SyntaxMessage& message) {
+    luaL_checkstack(L, LUA_MINSTACK, "for a value alone on a line");
+    if (message.complaint != "syntax error" && message.complaint != "unexpected symbol") return "";
+    // The parser rejects a name as a statement only at the next token, possibly on a later line.
+    for (int number = line; number >= source.first_line && number + 2 > line; --number) {
+        const std::string_view code = code_of(source.line(number));
+        if (!is_value(L, code)) continue;
+        constexpr std::size_t longest = 40;
+        const std::string where = number == line ? "a value alone" : fmt::format("line {}, a value alone,", number);
+        return fmt::format("; {} is not a statement: print({}) shows it", where, code.size() > longest ? "..." : code);
+    }
+    return "";
+}
+
 // The source line of an error with a mark below it.
 
 /// Adds a name, also in quotes, as a key or choice may be written.
@@ -315,7 +351,7 @@ lua::Remarks first_remarks(lua_State* L, int error, int function) {
         return remarks(L, frame, *facts, source, message->line);
     }
     if (const auto syntax = lua::syntax_message(message->words)) {  // from a load() in the chunk
-        const std::string habit = syntax_habit(*syntax, statement_of(source, message->line));
+        const std::string habit = syntax_habit(L, *syntax, statement_of(source, message->line));
         return {habit, source ? excerpt(*source, message->line, {std::string(syntax->near)}) : "", ""};
     }
     return remarks(L, frame, lua::running_message(message->words), source, message->line);
@@ -334,8 +370,9 @@ lua::Remarks remarks_on_syntax(lua_State* L, int index, const char* file) {
     }
     const auto source = file != nullptr ? source_of_file(file) : source_kept(L, message->chunk);
     const lua::SyntaxMessage syntax = lua::syntax_message(message->words).value_or(lua::SyntaxMessage{message->words});
-    return {syntax_habit(syntax, statement_of(source, message->line)),
-            source ? syntax_excerpt(L, *source, message->line, syntax) : "", ""};
+    std::string habit = syntax_habit(L, syntax, statement_of(source, message->line));
+    if (habit.empty() && source) habit = bare_value(L, *source, message->line, syntax);
+    return {habit, source ? syntax_excerpt(L, *source, message->line, syntax) : "", ""};
 }
 
 }  // namespace dinal::errors

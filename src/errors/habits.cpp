@@ -11,6 +11,7 @@
 #include "lua/lua_text.hpp"
 #include "lua/safe_mode.hpp"
 #include "lua/standard_globals.hpp"
+#include "text/suggest.hpp"
 #include "text/words.hpp"
 
 namespace dinal::errors {
@@ -18,7 +19,6 @@ namespace dinal::errors {
 namespace {
 
 constexpr std::string_view loop_cure = "; a loop is: for i = 1, 10 do ... end";
-constexpr std::string_view return_cure = "; is the word return missing there?";
 constexpr std::string_view print_cure = "; a value is shown by print(x)";
 constexpr std::string_view slice_cure =
     "; a part of a vector is v:slice(first, last), of a list table.unpack(list, first, last)";
@@ -76,16 +76,9 @@ constexpr Habit first_habits[] = {
     {"help w", "; write ?name, or help \"name\""},
 };
 constexpr Habit last_habits[] = {
-    {"n : =", "; assigning is ="},
-    {"n : #|s", "; a named value is written with =, I = 1"},
-    {"for (", loop_cure},
-    {"^ n ( n ) =", "; a function is written: {0} = function(t) return ... end"},
-    {"== =", "; comparing is =="},
-    {") {", "; a block has no braces and ends with end"},
-    {"function ( ... ) #", return_cure},
-    {"function ( ... ) n *|+|-|/|^ 1", return_cure},
-    {"^ print|plot|require n|#", "; a call needs parentheses: {0}(...)"},
-    {"system|nondimensional|identify|sweep n", "; options are in braces: {0}{ ... }"},
+    {"n : =", "; assigning is ="}, {"n : #|s", "; a named value is written with =, I = 1"},
+    {"for (", loop_cure},          {"^ n ( n ) =", "; a function is written: {0} = function(t) return ... end"},
+    {"== =", "; comparing is =="}, {") {", "; a block has no braces and ends with end"},
 };
 constexpr Habit between_habits[] = {
     {"n #", "; is an operator missing there, such as *, or ( ), as in f({1})?"},
@@ -147,10 +140,6 @@ constexpr Habit said_habits[] = {
     {"^ ',' expected near ':'", loop_cure},
     {"^ ')' expected ... near '='", "; write named options in braces: system{ I = 1, k = 4 }"},
     {"^ unfinished string", "; its closing quote is missing"},
-    {"^ malformed number", "; a number has one point, and a product a star, as in 2*pi"},
-    {"> expected near 'end'", "; is a word missing before this end: function, if or do?"},
-    {"^ function arguments expected", "; a method is called with parentheses: run:plot()"},
-    {"^ bad argument ? ? to ? ... got vector", "; of a vector it is v:{5}()"},
     {"^ '}' expected", "; is a comma missing there?"},
 };
 constexpr Habit unknown_habits[] = {
@@ -171,8 +160,6 @@ constexpr Habit unknown_habits[] = {
     {"sprintf", "; did you mean 'string.format'?"},
     {"round", "; rounding is math.floor(x + 0.5), or string.format(\"%.3f\", x)"},
     {"abs", "; did you mean 'math.abs', or of a vector v:abs()?"},
-    {"max|min", "; of a vector it is v:{0}(), of numbers math.{0}(a, b)"},
-    {"mean|std|sum|sort|explain|energy|simulate|steady", "; a method is called with a colon: x:{0}()"},
     {"append", "; appending is list[#list + 1] = x"},
     {"enumerate", "; a loop over a list is: for i, x in ipairs(list) do ... end"},
     {"np", "; vectors are made by vector.linspace, vector{ ... }; see ?vector"},
@@ -213,8 +200,6 @@ constexpr Habit unfinished_habits[] = {
     {"^ if ... :_ ?", then_cure},
     {"^ cd ?", folder_cure},
     {"^ ls ?", "; :ls folder lists the files of a folder"},
-    {": $", "; a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end"},
-    {": n $", "; a method is called, as in run:plot(), and a field is written with a point: .{1}"},
     {"#+ % $", "; % is the remainder of a division; {0} percent are {0}/100"},
 };
 constexpr Habit complete_habits[] = {
@@ -267,6 +252,22 @@ std::string called_name(lua_State* L, std::string_view name, std::string_view ty
     return type == name ? fmt::format("; it is a module: help({}) lists its functions", name) : "";
 }
 
+/// Remark on run.energy.total: a field is read from a function that should be called.
+std::string uncalled_function(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
+    const lua::Tokens all = lua::tokens(statement);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (!all[i].is(message.name)) continue;
+        std::string name(message.name);
+        if (i > 1 && all[i - 1].is(".")) {
+            lua::push_global(L, all[i - 2].text);
+            name.insert(0, std::string(all[i - 2].text) + (lua_isuserdata(L, -1) != 0 ? ":" : "."));
+            lua_pop(L, 1);
+        }
+        return "; " + name + " is a function: call it first";
+    }
+    return "";
+}
+
 bool is_number(std::string_view text) {
     return !text.empty() && text.find_first_not_of("0123456789.") == std::string_view::npos;
 }
@@ -305,9 +306,7 @@ std::string running_habit(lua_State* L, const lua::LuaMessage& message, std::str
          {nil && lua::safe_mode() ? foreign_tokens(statement, Seen::safe, message.name) : "",
           nil || message.type == "string" ? foreign_tokens(statement, Seen::running) : "",
           global ? called_name(L, message.name, message.type) : "", foreign_tokens(message.words, Seen::said),
-          message.type == "function" && !message.calculates
-              ? fmt::format("; {} is a function: call it first", message.name)
-              : "",
+          message.type == "function" && !message.calculates ? uncalled_function(L, message, statement) : "",
           message.calls ? "" : foreign_tokens(statement, Seen::named, message.name)}) {
         if (!remark.empty()) return remark;
     }
@@ -323,6 +322,32 @@ constexpr std::string_view printed_signs[][2] = {{"“", "\""}, {"”", "\""}, {
                                                  {"‘", "'"},  {"’", "'"},  {"−", "-"},  {"–", "-"},  {"×", "*"},
                                                  {"·", "*"},  {"²", "^2"}, {"≤", "<="}, {"≥", ">="}};
 
+/// The message with the rejected token and its context.
+struct Stumble {
+    const lua::SyntaxMessage& message;
+    lua::Tokens all = {};
+    std::size_t at = 0;  ///< index of the rejected token in `all`; 0 if unknown or the first
+
+    const lua::Token& token() const { return all[at]; }
+    const lua::Token& before() const { return all[at - 1]; }
+};
+
+bool is_operand(const lua::Token& token) {
+    return token.kind == lua::TokenKind::name || token.kind == lua::TokenKind::number;
+}
+
+/// The likeliest token with that text: the last one right behind a name or number, otherwise the first.
+Stumble stumble_in(const lua::SyntaxMessage& message, std::string_view statement) {
+    Stumble stumble{message, lua::tokens(statement)};
+    for (std::size_t i = 1; i < stumble.all.size(); ++i) {
+        if (stumble.all[i].text == message.near &&
+            (stumble.at == 0 || (is_operand(stumble.all[i]) && is_operand(stumble.all[i - 1])))) {
+            stumble.at = i;
+        }
+    }
+    return stumble;
+}
+
 std::string printed_sign(const lua::SyntaxMessage& message, std::string_view statement) {
     if (!message.near.starts_with("<\\")) return "";
     if (statement.starts_with("\xFF\xFE") || statement.starts_with("\xFE\xFF")) {
@@ -336,12 +361,104 @@ std::string printed_sign(const lua::SyntaxMessage& message, std::string_view sta
     return "; names and signs of Lua are in plain letters: theta, pi, omega";
 }
 
+/// How a global function is called, with braces for options or with parentheses; "" if there is none.
+std::string call_of_global(lua_State* L, std::string_view name) {
+    const bool is_function = lua::push_global(L, name) == LUA_TFUNCTION;
+    const lua::Documented found = lua::documented(L, -1);
+    lua_pop(L, 1);
+    if (!is_function) return "";
+    const std::string_view signature = found.member != nullptr ? found.member->doc.signature : "";
+    const std::size_t bracket = signature.find_first_of("({");
+    return bracket != std::string_view::npos && signature[bracket] == '{'
+               ? fmt::format("; write its options in braces: {}{{ ... }}", name)
+               : fmt::format("; a call needs parentheses: {}(...)", name);
+}
+
+/// Remark on two words instead of one: "print x", "run:save name", "retrun x", "def f", "2 x".
+std::string two_words(lua_State* L, const Stumble& stumble) {
+    if (stumble.at == 0 || stumble.token().kind == lua::TokenKind::symbol ||
+        stumble.before().kind != lua::TokenKind::name) {
+        return "";
+    }
+    const std::string_view first = stumble.before().text;
+    if (stumble.message.complaint == "function arguments expected") {
+        return "; a method is called with parentheses: " + std::string(first) + "(...)";
+    }
+    if (std::string call = call_of_global(L, first); !call.empty()) {
+        return call;
+    }
+    const bool long_enough = first.size() > 2;
+    return long_enough && stumble.message.complaint == "syntax error" ? text::did_you_mean(first, lua::keywords()) : "";
+}
+
+/// Remark on a misspelt keyword: "if x then" with an error in `then`; "fucntion(x)", which is a call, so that its end
+/// is unexpected.
+std::string misspelt_keyword(const Stumble& stumble) {
+    if (stumble.at > 0 && !stumble.message.expected.empty()) {
+        const std::array<std::string_view, 1> wanted = {stumble.message.expected};
+        return text::did_you_mean(stumble.token().text, wanted);
+    }
+    if (stumble.message.complaint == "<eof> expected" && stumble.message.near == "end") {
+        constexpr std::array<std::string_view, 1> wanted = {"function"};
+        for (std::size_t i = 0; i + 1 < stumble.all.size(); ++i) {
+            const lua::Token& token = stumble.all[i];
+            if (token.kind == lua::TokenKind::name && stumble.all[i + 1].is("(")) {
+                const std::string hint = text::did_you_mean(token.text, wanted);
+                if (!hint.empty()) return hint;
+            }
+        }
+    }
+    return "";
+}
+
+/// Remark on a missing *: "3t", "2pi".
+std::string missing_star(const Stumble& stumble) {
+    if (stumble.message.complaint != "malformed number") return "";
+    std::string_view word = stumble.message.near;
+    for (const lua::Token& token : stumble.all) {  // the message is cut off at 2p
+        word = token.kind == lua::TokenKind::number && token.text.starts_with(word) ? token.text : word;
+    }
+    const std::size_t digits = std::min(word.find_first_not_of("0123456789."), word.size());
+    const std::string_view name = word.substr(digits);
+    const bool product = digits > 0 && !name.empty() && text::is_name_char(name.front()) && name != "e" &&
+                         name != "E" && std::ranges::count(word, '.') < 2;
+    return product ? "; a product needs a star: " + std::string(word.substr(0, digits)) + "*" + std::string(name) : "";
+}
+
+/// Remark on a missing return: "function(t) 3*t end".
+std::string missing_return(const Stumble& stumble) {
+    const auto& all = stumble.all;
+    const std::string_view complaint = stumble.message.complaint;
+    if (complaint != "unexpected symbol" && complaint != "syntax error") return "";
+    std::size_t body = 0;  // body of the innermost function around the place
+    for (std::size_t i = 0; i < stumble.at; ++i) {
+        if (!all[i].is("function")) continue;
+        while (i < stumble.at && !all[i].is(")")) ++i;
+        body = i + 1;
+    }
+    if (body == 0 || body > stumble.at || (stumble.at + 1 < all.size() && all[stumble.at + 1].is("="))) return "";
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(body);
+    const auto place = all.begin() + static_cast<std::ptrdiff_t>(stumble.at);
+    const lua::Token& token = stumble.token();
+    const bool value = token.kind == lua::TokenKind::number || token.kind == lua::TokenKind::string;
+    const bool sign = token.kind == lua::TokenKind::symbol &&
+                      (std::string_view("+-*/^%<>").find(token.text.front()) != std::string_view::npos ||
+                       token.is("..") || token.is("==") || token.is("~="));
+    const bool expression = (value || sign) && std::none_of(first, place, [](const lua::Token& other) {
+                                return other.kind == lua::TokenKind::keyword || other.is("=") || other.is(";");
+                            });
+    return expression ? "; is the word return missing there?" : "";
+}
+
 }  // namespace
 
-std::string syntax_habit(const lua::SyntaxMessage& message, std::string_view statement) {
+std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement) {
+    luaL_checkstack(L, LUA_MINSTACK, "for the habits of others");
+    const Stumble stumble = stumble_in(message, statement);
     const bool expression = message.expected.empty() || message.expected == ")";
     for (std::string advice :
-         {foreign_tokens(statement, Seen::first), printed_sign(message, statement),
+         {foreign_tokens(statement, Seen::first), printed_sign(message, statement), two_words(L, stumble),
+          misspelt_keyword(stumble), missing_star(stumble), missing_return(stumble),
           foreign_tokens(statement, Seen::last), expression ? foreign_tokens(statement, Seen::between) : "",
           foreign_tokens(message.words, Seen::said)}) {
         if (!advice.empty()) return advice;

@@ -75,10 +75,15 @@ std::vector<std::string> variables(lua_State* L, lua_Debug* frame) {
     return names;
 }
 
+/// The beginning of x.y.z, whose last name is the token `last`.
+std::size_t path_begin(const lua::Tokens& all, std::size_t last) {
+    while (last >= 2 && all[last - 1].is(".") && all[last - 2].kind == lua::TokenKind::name) last -= 2;
+    return last;
+}
+
 /// Pushes the value of x.y.z, whose last name is the token `last`; runs no user code.
 void push_path(lua_State* L, lua_Debug* frame, const lua::Tokens& all, std::size_t last) {
-    std::size_t first = last;
-    while (first >= 2 && all[first - 1].is(".") && all[first - 2].kind == lua::TokenKind::name) first -= 2;
+    const std::size_t first = path_begin(all, last);
     push_variable(L, frame, all[first].text);
     for (std::size_t k = first + 2; k <= last; k += 2) {
         lua_pushlstring(L, all[k].text.data(), all[k].text.size());
@@ -177,10 +182,36 @@ std::string qualified(lua_State* L, std::string_view name, Use use) {
     return text::did_you_mean_one_of(found);
 }
 
+/// Returns whether the value on the top is an object of dinal with this field or method, such as a system or a run.
+bool has_member(lua_State* L, std::string_view name, lua::Kind kind) {
+    const lua::Documented found = lua::documented(L, -1);
+    return is_object_of_ours(L, -1) && found.member == nullptr &&
+           std::ranges::any_of(found.owner->members,
+                               [&](const lua::Member& member) { return member.kind == kind && member.name == name; });
+}
+
+/// Fields with that name in the user's variables: Rd is dry.Rd. Two at most.
+std::string field_of_variable(lua_State* L, std::string_view name) {
+    std::vector<std::string> owners;
+    lua_pushglobaltable(L);
+    lua_pushnil(L);
+    while (lua_next(L, -2) != 0) {
+        const bool named = lua_type(L, -2) == LUA_TSTRING;
+        if (named && has_member(L, name, lua::Kind::field) && std::string_view(lua_tostring(L, -2)) != "ans") {
+            owners.push_back(fmt::format("{}.{}", lua_tostring(L, -2), name));
+        }
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    std::ranges::sort(owners);
+    return text::did_you_mean_one_of(owners);
+}
+
 /// The likely meanings of an undefined name, among these variables and the globals.
 std::string meant_by(lua_State* L, std::string_view name, std::vector<std::string> names, Use use = Use::any) {
     std::string hint = foreign_tokens(name, Seen::unknown);
     hint = hint.empty() ? qualified(L, name, use) : hint;
+    hint = hint.empty() ? field_of_variable(L, name) : hint;
     lua_pushglobaltable(L);
     add_keys(L, names);
     lua_pop(L, 1);
@@ -305,11 +336,12 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
 
 Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
-    if (std::string habit = running_habit(L, message, statement); !habit.empty()) return {habit};
-    // Lua 5.4.4 says 'integer index', later versions '?'.
-    if (message.type == "nil" && (message.name == "integer index" || message.name == "?")) {
-        return {"; there is no such element: those of a list x are x[1] to x[#x]"};
+    for (const std::string& habit : {running_habit(L, message, statement), meant_method(L, message, statement)}) {
+        if (!habit.empty()) {
+            return {habit};
+        }
     }
+    if (Advice missing = missing_element(L, frame, message, statement); !missing.culprit.empty()) return missing;
     if (message.type == "nil" && message.kind == "global") {
         return {meant_by(L, message.name, variables(L, frame), message.calculates ? Use::as_number : Use::any)};
     }
@@ -317,6 +349,123 @@ Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message,
         return {text::did_you_mean(message.name, siblings(L, frame, message.name, statement))};
     }
     return nil_global(L, frame, statement, "", message.misses_a_value);
+}
+
+namespace {
+
+/// The call name(object, ...) in the statement as one of a method: "object:name(...)". Empty without such a call, or if
+/// its first argument is a string, as in save("run.mat").
+std::string as_method(std::string_view statement, std::string_view name) {
+    const lua::Tokens all = lua::tokens(statement);
+    std::size_t i = 2;
+    while (i < all.size() && !(all[i - 2].is(name) && all[i - 1].is("("))) ++i;
+    if (i >= all.size() || all[i].is(")") || all[i].kind == lua::TokenKind::string) return "";
+    const std::size_t begin = all[i].at;
+    bool simple = all[i].nesting() == 0;  // a name, field or call, which a colon may follow
+    for (int depth = 0; i < all.size() && (depth > 0 || !(all[i].is(",") || all[i].is(")"))); ++i) {
+        const bool path = all[i].kind == lua::TokenKind::name || all[i].is(".") || all[i].is(":");
+        simple = simple && (depth > 0 || path || all[i].nesting() > 0);
+        depth += all[i].nesting();
+    }
+    if (i == all.size()) return "";
+    const std::string_view object = text::trimmed(statement.substr(begin, all[i].at - begin), " \n");
+    constexpr std::size_t longest = 40;
+    if (object.size() > longest || object.find('\n') != std::string_view::npos) return fmt::format("x:{}(...)", name);
+    return fmt::format("{}:{}({})", simple ? std::string(object) : fmt::format("({})", object), name,
+                       all[i].is(")") ? "" : "...");
+}
+
+/// Returns whether an object among the arguments of the innermost calls has a method of that name.
+bool passes_its_owner(lua_State* L, std::string_view name) {
+    constexpr int innermost = 4;
+    lua_Debug frame{};
+    for (int level = 0; level < innermost && lua_getstack(L, level, &frame) != 0; ++level) {
+        for (int i = 1; const char* variable = lua_getlocal(L, &frame, i); ++i) {
+            const bool passed = *variable == '(' && has_member(L, name, lua::Kind::method);
+            lua_pop(L, 1);
+            if (passed) return true;
+        }
+    }
+    return false;
+}
+
+/// A Lua function that returns the length of an object of dinal, so that no user code runs.
+int length(lua_State* L) {
+    lua_pushinteger(L, luaL_len(L, 1));
+    return 1;
+}
+
+/// The length of the list on the top, which is popped; none if it is not a list.
+std::optional<lua_Integer> taken_length(lua_State* L) {
+    std::optional<lua_Integer> count;
+    if (lua_istable(L, -1)) {
+        count = static_cast<lua_Integer>(lua_rawlen(L, -1));
+    } else if (is_object_of_ours(L, -1)) {
+        lua_pushcfunction(L, length);
+        lua_pushvalue(L, -2);
+        if (lua_pcall(L, 1, 1, 0) == LUA_OK) count = lua_tointeger(L, -1);
+        lua_pop(L, 1);
+    }
+    lua_pop(L, 1);
+    return count;
+}
+
+/// The whole number in a token, or in the variable that it names.
+std::optional<lua_Integer> number_of(lua_State* L, lua_Debug* frame, const lua::Token& token) {
+    if (token.kind == lua::TokenKind::name) {
+        push_variable(L, frame, token.text);
+    } else if (lua_stringtonumber(L, std::string(token.text).c_str()) == 0) {
+        return std::nullopt;
+    }
+    int is_whole = 0;
+    const lua_Integer number = lua_type(L, -1) == LUA_TNUMBER ? lua_tointegerx(L, -1, &is_whole) : 0;
+    lua_pop(L, 1);
+    return is_whole != 0 ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+std::string meant_method(lua_State* L, const lua::LuaMessage& message, std::string_view statement) {
+    std::string_view name;
+    if (message.calls && message.type == "nil" && message.kind == "global") {
+        name = message.name;
+    } else if (message.words.starts_with("bad argument #1 to '") && !message.quoted.empty()) {
+        name = message.quoted.front();
+    }
+    const std::string meant = name.empty() ? "" : as_method(statement, name);
+    if (meant.empty() || !passes_its_owner(L, name)) return "";
+    return fmt::format("; did you mean '{}'?", meant);
+}
+
+Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
+    // Lua 5.4.4 says 'integer index', later versions '?'.
+    if (message.type != "nil" || message.kind != "field" || (message.name != "integer index" && message.name != "?")) {
+        return {};
+    }
+    Advice possible;
+    const lua::Tokens all = lua::tokens(statement);
+    for (std::size_t i = 1; i + 1 < all.size(); ++i) {
+        if (!all[i].is("[") || all[i - 1].kind != lua::TokenKind::name) continue;
+        push_path(L, frame, all, i - 1);
+        const auto count = taken_length(L);
+        if (!count) continue;
+        const lua::Token& index = all[i + 1];
+        const bool alone = i + 2 < all.size() && all[i + 2].is("]");
+        const auto number = alone ? number_of(L, frame, index) : std::nullopt;
+        if (number && *number >= 1 && *number <= *count) continue;  // the element exists
+        const std::size_t begin = all[path_begin(all, i - 1)].at;
+        Advice found{fmt::format("; '{}' has {}", statement.substr(begin, all[i].at - begin),
+                                 text::counted(static_cast<std::size_t>(*count), "element")),
+                     std::string(number ? index.text : all[i - 1].text)};
+        if (number) {
+            if (*number < 1) found.end_of_sentence += ", which are counted from 1";
+            if (index.kind == lua::TokenKind::name)
+                found.end_of_sentence += fmt::format(", and {} is {}", index.text, *number);
+            return found;
+        }
+        if (possible.culprit.empty()) possible = found;
+    }
+    return possible;
 }
 
 }  // namespace dinal::errors

@@ -92,12 +92,29 @@ void note_standard_globals(lua_State* L) {
     lua_rawsetp(L, LUA_REGISTRYINDEX, &standard_key);
 }
 
-bool is_overwritten(lua_State* L, std::string_view name) {
+bool is_overwritten(lua_State* L, std::string_view name, std::string_view field) {
+    const int top = lua_gettop(L);
     push_standard_globals(L);
-    const bool was = push_field(L, -1, name) != LUA_TNIL;
-    push_global(L, name);
-    const bool overwritten = was && lua_rawequal(L, -2, -1) == 0;
-    lua_pop(L, 3);
+    push_field(L, -1, name);
+    if (!field.empty()) {  // a library: its initial table, and the copy of its fields
+        lua_rawgetp(L, LUA_REGISTRYINDEX, &fields_key);
+        lua_pushvalue(L, -2);
+        lua_rawget(L, -2);
+        if (lua_istable(L, -1)) {
+            push_field(L, -1, field);
+            lua_pushvalue(L, top + 2);
+            push_field(L, -1, field);
+        } else {
+            lua_settop(L, top);
+            return false;
+        }
+    } else {
+        push_global(L, name);
+    }
+    const int before = field.empty() ? top + 2 : lua_gettop(L) - 2;
+    const bool was = !lua_isnil(L, before);
+    const bool overwritten = was && lua_rawequal(L, before, -1) == 0;
+    lua_settop(L, top);
     return overwritten;
 }
 

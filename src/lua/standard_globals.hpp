@@ -30,8 +30,8 @@ void push_standard_globals(lua_State* L);
 /// Pushes a table of the libraries' initial fields: library -> copy of its fields.
 void push_standard_fields(lua_State* L);
 
-/// Returns whether a standard global has been replaced.
-bool is_overwritten(lua_State* L, std::string_view name);
+/// Returns whether a standard global has been replaced; with `field`, a field of a standard library, such as math.pi.
+bool is_overwritten(lua_State* L, std::string_view name, std::string_view field = {});
 
 /// Returns whether the table `dinal` has this global, too.
 bool is_of_dinal(lua_State* L, std::string_view name);

@@ -110,6 +110,40 @@ bool load_with_last_value(lua_State* L, Chunk& chunk, const std::string& text, b
     return false;
 }
 
+/// The innermost unclosed bracket.
+std::optional<lua::Token> open_bracket(std::string_view text) {
+    lua::Tokens open;
+    for (const lua::Token& token : lua::tokens(text)) {
+        if (token.nesting() > 0) {
+            open.push_back(token);
+        } else if (token.nesting() < 0 && !open.empty()) {
+            open.pop_back();
+        }
+    }
+    return open.empty() ? std::nullopt : std::optional(open.back());
+}
+
+char partner_of(char bracket) {
+    return bracket == '(' ? ')' : bracket == '[' ? ']' : '}';
+}
+
+/// The missing part, according to the message on the top of the stack about a chunk that ended too early.
+std::string what_is_missing(lua_State* L, std::string_view text) {
+    const std::string message(lua::text_at(L, -1));
+    const std::size_t line = message.find(':') + 1, words = message.find(": ") + 2;  // input:1: ...
+    const std::string number = message.substr(line, words - 2 - line);
+    const auto parsed = lua::syntax_message(std::string_view(message).substr(words));
+    if (!parsed || parsed->expected.empty() || parsed->expected.front() == '<') {
+        const auto open = open_bracket(text);
+        return open ? fmt::format("{} of line {} waits for {}", open->text, open->line, partner_of(open->text.front()))
+                    : fmt::format("line {} goes on", number);
+    }
+    if (parsed->opened.empty()) {  // the missing part is on that line
+        return fmt::format("line {} waits for {}", number, parsed->expected);
+    }
+    return fmt::format("{} of line {} waits for {}", parsed->opened, parsed->opened_line, parsed->expected);
+}
+
 /// The words after an initial `return`.
 std::string_view without_return(std::string_view text) {
     const lua::Tokens all = lua::tokens(text);
@@ -130,9 +164,11 @@ Chunk compile(lua_State* L, const std::string& text) {
         return chunk;
     }
     bool early = ended_early(L, text);
+    chunk.waits = early ? what_is_missing(L, text) : "";
     lua_pop(L, 1);
     const bool statements = load(L, text);
     const bool statements_early = !statements && ended_early(L, text);
+    chunk.waits = statements_early ? what_is_missing(L, text) : chunk.waits;
     early = !statements && (statements_early || early);
     if (quiet.find_first_of("\n;") != std::string::npos) {
         const int top = lua_gettop(L);
@@ -203,10 +239,14 @@ void take_values(lua_State* L, int base, const Chunk& chunk, lua_CFunction show_
     if (!lua_isnil(L, base + 1) && !only_reads_variable(chunk)) {
         set_ans(L, base + 1);
     }
+    const std::string element = single && lua_isnil(L, base + 1) ? element_notice(L, chunk) : "";
     if (!chunk.silent) {
         show_by(L, show_values, base);
     }
-    if (single) say_notice(name_notice(L, chunk));
+    if (single) {
+        say_notice(name_notice(L, chunk));
+        say_notice(element);
+    }
 }
 
 /// Keeps the partial run before an error; `before` is the index of the previous one.

@@ -18,6 +18,7 @@ struct Chunk {
     std::string statements;  ///< executed first
     std::string expression;  ///< returned by the function; may be empty
     bool silent = false;     ///< whether a final `;` suppresses the values
+    std::string waits = {};  ///< if incomplete: "'for' of line 1 waits for 'end'"
 };
 
 /// The name of such chunks in messages: "input:1: ...".

@@ -63,8 +63,60 @@ void load(Session& session, const std::string& file) {
         if (!session.record.writes(file)) {
             session.record.add_statement(fmt::format("dofile({})", text::quoted(file)));
         }
+        const auto text = files::read_file(file);
+        say_notice(text ? local_notice(*text) : "");
     }
     lua_settop(L, 0);
+}
+
+void history(Session& session, const std::string& argument) {
+    constexpr std::size_t usual = 20;
+    const std::size_t all = session.inputs.size();
+    const std::size_t wanted = argument.empty() ? usual : std::strtoul(argument.c_str(), nullptr, 10);
+    for (std::size_t i = all - std::min(wanted, all); i < all; ++i) {
+        say_value(fmt::format("{:4}  {}\n", i + 1, text::indented(session.inputs[i], 6)));
+    }
+}
+
+/// Lets the user change the text in an editor; returns the result or an error.
+text::Expected<std::string> edited(const std::string& text) {
+    const char* editor = std::getenv("VISUAL");                                      // NOLINT(concurrency-mt-unsafe)
+    editor = editor == nullptr || *editor == '\0' ? std::getenv("EDITOR") : editor;  // NOLINT(concurrency-mt-unsafe)
+    std::string name = "/tmp/dinal-XXXXXX.lua";
+    const int file = ::mkstemps(name.data(), 4);
+    if (file < 0) return text::Error{"no file can be made in /tmp"};
+    ::close(file);
+    static_cast<void>(files::write_file(name, text + "\n"));
+    const std::string command = fmt::format("{} {}", editor == nullptr || *editor == '\0' ? "nano" : editor, name);
+    const int status = std::system(command.c_str());  // NOLINT: the user chose the editor
+    auto changed = files::read_file(name);
+    ::unlink(name.c_str());
+    if (status != 0) return text::error("'{}' failed; the variable EDITOR names an editor", command);
+    return changed;
+}
+
+void edit(Session& session, const std::string& argument) {
+    if (lua::safe_mode()) {
+        say_error(":edit is not possible in safe mode, which starts no programs");
+        return;
+    }
+    const std::size_t all = session.inputs.size();
+    const std::size_t number = argument.empty() ? all : std::strtoul(argument.c_str(), nullptr, 10);
+    if (number > all || (number == 0 && !argument.empty())) {
+        say_error(fmt::format(":edit needs the number of an input, from 1 to {}; :history lists them", all));
+        return;
+    }
+    const auto text = edited(number == 0 ? "" : session.inputs[number - 1]);
+    if (!text) {
+        say_error(":edit: " + text.error().message());
+        return;
+    }
+    const std::string input(text::trimmed(*text));
+    if (input.empty()) return;
+    say_value(input + "\n");
+    session.editor.remember(input);
+    session.inputs.push_back(input);
+    run_text(session, input);
 }
 
 int print_globals(lua_State* L) {
@@ -155,13 +207,16 @@ struct Command {
     bool file = false;  // whether the argument is a file name
 };
 
-constexpr std::array<Command, 11> commands = {{
+constexpr std::array<Command, 13> commands = {{
     {"help", Argument::optional, ":help [name]", "This list, or what help \"name\" says.", help},
     {"quit", Argument::none, ":quit", "Leaves dinal, like Ctrl-D.", quit},
     {"time", Argument::needed, ":time code", "Runs code once and prints the time it took.", time},
     {"save", Argument::needed, ":save file",
      "Writes the inputs of this session so far, without the errors, to a script.", save, true},
     {"load", Argument::needed, ":load file", "Runs a script; its global variables stay.", load, true},
+    {"history", Argument::optional, ":history [n]", "Lists the last 20 inputs of this session, or n.", history},
+    {"edit", Argument::optional, ":edit [n]",
+     "Opens the last input, or the n-th of :history, in your editor (EDITOR), and runs it.", edit},
     {"who", Argument::none, ":who", "Lists your own variables.", who},
     {"cd", Argument::optional, ":cd [folder]", "Changes the current folder, without an argument to your own.",
      change_folder, true},
@@ -175,7 +230,7 @@ constexpr std::array<Command, 11> commands = {{
 void help(Session& session, const std::string& argument) {
     const terminal::Display screen = terminal::display_of(STDOUT_FILENO);
     if (!argument.empty() && argument.front() != ':') {
-        say(answer_to(session.L, argument));
+        terminal::show_in_pages(answer_to(session.L, argument));
         return;
     }
     std::string text;
@@ -190,10 +245,16 @@ void help(Session& session, const std::string& argument) {
     say(text);
 }
 
-/// The command with this name, or nullptr.
+/// The command with this name, or with a unique beginning; otherwise nullptr.
 const Command* find(std::string_view name) {
-    const auto* const found = std::ranges::find(commands, name, &Command::name);
-    return found == commands.end() ? nullptr : found;
+    const auto* const exact = std::ranges::find(commands, name, &Command::name);
+    if (exact != commands.end()) {
+        return exact;
+    }
+    const auto begins = [name](const Command& c) { return !name.empty() && c.name.starts_with(name); };
+    const auto* const first = std::ranges::find_if(commands, begins);
+    const bool only = std::ranges::count_if(commands, begins) == 1;
+    return only ? first : nullptr;
 }
 
 /// Accepts quotes around a file name as in Lua: :load "lab.lua".
@@ -223,7 +284,7 @@ bool is_command(std::string_view line) {
 
 void run_command(Session& session, const std::string& line) {
     if (is_question(line)) {
-        say(answer_to(session.L, line));
+        terminal::show_in_pages(answer_to(session.L, line));
         return;
     }
     const std::string_view name = name_of(line);

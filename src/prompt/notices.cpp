@@ -24,6 +24,36 @@
 namespace dinal::prompt {
 namespace {
 
+bool opens_block(const lua::Token& token) {
+    return token.is("function") || token.is("do") || token.is("if") || token.is("repeat");
+}
+bool closes_block(const lua::Token& token) {
+    return token.is("end") || token.is("until");
+}
+
+/// The names declared by `local` at token `at`.
+std::vector<std::string_view> declared(const lua::Tokens& all, std::size_t at) {
+    std::vector<std::string_view> names;
+    std::size_t i = at + 1 + (at + 1 < all.size() && all[at + 1].is("function") ? 1 : 0);
+    for (; i < all.size() && all[i].kind == lua::TokenKind::name; i += 2) {
+        names.push_back(all[i].text);
+        if (i + 1 >= all.size() || !all[i + 1].is(",")) {
+            break;
+        }
+    }
+    return names;
+}
+
+/// The number of uses of a variable, without fields such as lab.given. 1 means only its declaration.
+std::ptrdiff_t uses(const lua::Tokens& all, std::string_view name) {
+    std::ptrdiff_t count = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const bool field = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":"));
+        count += all[i].kind == lua::TokenKind::name && all[i].text == name && !field ? 1 : 0;
+    }
+    return count;
+}
+
 std::string without_semicolon(const std::string& remark) {
     return remark.substr(std::min<std::size_t>(2, remark.size()));
 }
@@ -48,17 +78,80 @@ std::string name_notice(lua_State* L, const Chunk& chunk) {
     return hint.empty() ? "" : fmt::format("there is no variable '{}'{}", name, hint);
 }
 
-std::string unfinished_notice(const std::string& text) {
-    return text.find('\n') == std::string::npos
+std::string element_notice(lua_State* L, const Chunk& chunk) {
+    const lua::Tokens all = lua::tokens(chunk.expression);
+    if (all.size() < 3) return "";
+    if (all.back().is("]")) {
+        const lua::LuaMessage nothing{.words = {}, .type = "nil", .kind = "field", .name = "?"};
+        return without_semicolon(errors::missing_element(L, nullptr, nothing, chunk.expression).end_of_sentence);
+    }
+    if (all.back().kind != lua::TokenKind::name || !all[all.size() - 2].is(".")) return "";
+    const int top = lua_gettop(L);
+    const Meaning owner = meaning(L, std::span(all).first(all.size() - 2));
+    const std::vector<std::string> names =
+        owner.kind == Meaning::Kind::value && lua_istable(L, -1) ? errors::member_names(L) : std::vector<std::string>();
+    lua_settop(L, top);
+    const std::string hint = text::did_you_mean(all.back().text, names);
+    if (!hint.empty()) return fmt::format("there is no '{}' in it{}", all.back().text, hint);
+    constexpr std::size_t few = 8;
+    return names.empty() || names.size() > few
+               ? ""
+               : fmt::format("there is no '{}' in it: it has {}", all.back().text, fmt::join(names, ", "));
+}
+
+namespace {
+
+std::string colon_notice(lua_State* L, const std::string& text) {
+    const TypedText typed(text);
+    if (!typed.tokens_before().empty() && typed.tokens_before().back().is(":") && typed.word().empty() &&
+        text.find('\n') == std::string::npos) {
+        return "a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end";
+    }
+    if (typed.cursor() != Cursor::member || typed.separator() != ':' || typed.word().empty()) {
+        return "";
+    }
+    lua::Tokens expression(typed.owner().begin(), typed.owner().end());
+    expression.push_back({lua::TokenKind::symbol, ":"});
+    expression.push_back({lua::TokenKind::name, typed.word()});
+    const int top = lua_gettop(L);
+    const Meaning found = meaning(L, expression);
+    lua_settop(L, top);
+    if (found.kind != Meaning::Kind::member || found.member->kind == lua::Kind::function) {
+        return "";
+    }
+    return found.member->kind == lua::Kind::field
+               ? fmt::format("{} is a field: write it with a point, {}", found.member->name,
+                             help::written_name(*found.section, *found.member))
+               : fmt::format("{} is a method, which is called: {}", found.member->name,
+                             help::signature(found.member->doc));
+}
+
+}  // namespace
+
+std::string unfinished_notice(lua_State* L, const std::string& text) {
+    const std::string notice = colon_notice(L, text);
+    return notice.empty() && text.find('\n') == std::string::npos
                ? without_semicolon(errors::foreign_tokens(text, errors::Seen::unfinished))
-               : "";
+               : notice;
 }
 
 std::string local_notice(const std::string& text) {
     const lua::Tokens all = lua::tokens(text);
-    if (all.size() < 2 || !all.front().is("local")) return "";
-    const bool is_used = std::ranges::count(all, all[1].text, &lua::Token::text) > 1;
-    return is_used ? "" : "a local variable ends with the input: to keep it, leave out the word local";
+    const bool script = text.find('\n') != std::string::npos;
+    std::vector<std::string_view> names;
+    int depth = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (all[i].is("local") && depth == 0) {
+            for (const std::string_view name : declared(all, i)) {
+                if (script || uses(all, name) == 1)
+                    names.push_back(name);  // a variable used on the same line is not lost
+            }
+        }
+        depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;
+    }
+    if (names.empty()) return "";
+    return fmt::format("local variables end with the input: {} {} gone. To keep {}, leave out the word local",
+                       fmt::join(names, ", "), names.size() == 1 ? "is" : "are", names.size() == 1 ? "it" : "them");
 }
 
 std::string nil_notice(lua_State* L, const std::string& text) {
@@ -71,10 +164,29 @@ std::string comma_notice(const std::string& text) {
 
 std::string overwritten_notice(lua_State* L, const std::string& text) {
     const lua::Tokens all = lua::tokens(text);
-    if (all.size() < 2 || !all[1].is("=") || !lua::is_overwritten(L, all[0].text)) return "";
-    return fmt::format("{0} existed before and is now your variable; :reset restores it and deletes your variables{1}",
-                       all[0].text,
-                       lua::is_of_dinal(L, all[0].text) ? fmt::format(", {0} = dinal.{0} it alone", all[0].text) : "");
+    int depth = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        depth += all[i].is("{") || all[i].is("(") ? 1 : all[i].is("}") || all[i].is(")") ? -1 : 0;
+        if (depth > 0 || all[i].kind != lua::TokenKind::name) {
+            continue;
+        }
+        const bool defined = i > 0 && all[i - 1].is("function");
+        const bool field = i + 2 < all.size() && all[i + 1].is(".") && all[i + 2].kind == lua::TokenKind::name;
+        const std::size_t last = field ? i + 2 : i;
+        const bool part = i > 0 && (all[i - 1].is(".") || all[i - 1].is(":") || all[i - 1].is("local"));
+        const bool assigned = last + 1 < all.size() && (all[last + 1].is("=") || all[last + 1].is(","));
+        const std::string_view key = field ? all[i + 2].text : std::string_view();
+        if (part || !(assigned || defined) || !lua::is_overwritten(L, all[i].text, key)) {
+            continue;
+        }
+        const std::string whole = field ? fmt::format("{}.{}", all[i].text, key) : std::string(all[i].text);
+        if (!field && lua::is_of_dinal(L, all[i].text)) {
+            return fmt::format("{0} was a name of dinal and is now your variable; {0} = dinal.{0} restores it", whole);
+        }
+        return fmt::format("{} existed before and is now your variable; :reset restores it and deletes your variables",
+                           whole);
+    }
+    return "";
 }
 
 void say_notice(const std::string& notice) {

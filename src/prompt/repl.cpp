@@ -58,8 +58,8 @@ Aside aside(std::string_view line) {
 }
 
 /// Reminds of Ctrl-C if a line within a chunk looks like an attempt to leave.
-void remind_of_cancel(Aside found) {
-    say_notice(fmt::format("the input goes on; Ctrl-C cancels it{}",
+void remind_of_cancel(const Chunk& chunk, Aside found) {
+    say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
                            found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
 }
 
@@ -68,7 +68,8 @@ void remind_of_cancel(Aside found) {
 TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied) {
     lua_State* L = session.L;
     while (chunk.result == Compiled::incomplete) {
-        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text);
+        const std::string cue = chunk.waits + "; Ctrl-C cancels it";
+        TypedLine more = session.editor.read(prompt_text(L, "_PROMPT2", ">> "), input.text, cue);
         if (more.reading == Reading::end) {
             say("\n");
             chunk.result = Compiled::wrong;
@@ -84,7 +85,7 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
         const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
         const Aside found = in_text ? Aside::none : aside(more.text);
         if (found != Aside::none) {
-            remind_of_cancel(found);
+            remind_of_cancel(chunk, found);
             if (found != Aside::blank) {
                 continue;
             }
@@ -96,18 +97,23 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
     return input;
 }
 
+void remember(Session& session, const std::string& input) {
+    session.editor.remember(input);
+    if (!is_command(input)) session.inputs.push_back(input);
+}
+
 /// Executes an input, reading further lines of a chunk if needed.
 Reading take(Session& session, TypedLine input, bool copied) {
     lua_State* L = session.L;
     if (is_command(input.text)) {
-        session.editor.remember(input.text);
+        remember(session, input.text);
         run_command(session, input.text);
         return Reading::line;
     }
     Chunk chunk = compile(L, input.text);
     const bool incomplete = chunk.result == Compiled::incomplete;
-    if (const std::string notice = incomplete ? unfinished_notice(input.text) : ""; !notice.empty()) {
-        session.editor.remember(input.text);
+    if (const std::string notice = incomplete ? unfinished_notice(L, input.text) : ""; !notice.empty()) {
+        remember(session, input.text);
         say_notice(notice);
         return Reading::line;
     }
@@ -115,7 +121,7 @@ Reading take(Session& session, TypedLine input, bool copied) {
     if (input.reading == Reading::interrupted) {
         return input.reading;
     }
-    session.editor.remember(input.text);
+    remember(session, input.text);
     if (chunk.result == Compiled::ready) {
         run_chunk(session, chunk, input.text);
     } else {
@@ -197,7 +203,8 @@ bool run_text(Session& session, const std::string& text) {
         reject(session, text);
     }
     if (chunk.result == Compiled::incomplete) {  // no further line can complete it
-        say_notice(unfinished_notice(text));
+        const std::string notice = unfinished_notice(session.L, text);
+        say_notice(notice.empty() ? chunk.waits : notice);
     }
     const bool fine = ready && run_chunk(session, chunk, text);
     lua_settop(session.L, 0);

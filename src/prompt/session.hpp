@@ -46,7 +46,8 @@ struct Session {
     LineEditor editor;
     Record record;
     lua_CFunction show_values = print_values;
-    bool leaving = false;  ///< set by :quit
+    std::vector<std::string> inputs;  ///< without commands, for :history and :edit
+    bool leaving = false;             ///< set by :quit
 };
 
 /// Compiles and runs a complete text as at the prompt. Returns false after an error, which has been reported.

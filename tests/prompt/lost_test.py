@@ -8,10 +8,10 @@ sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 import pexpect
 
 from home import PROGRAM, AtHome
-from session import CONTINUATION, PATIENCE, environment
+from session import CONTINUATION, ESCAPES, PATIENCE, environment
 
 RUN = "run = nondimensional{ zeta = 0.1 }:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }"
-PASTE, PASTED = "\x1b[200~", "\x1b[201~"
+RIGHT, PASTE, PASTED = "\x1b[C", "\x1b[200~", "\x1b[201~"
 
 
 class Walked(AtHome):
@@ -45,6 +45,8 @@ class Walked(AtHome):
         ("for i in range(5): print(i)", "a loop is: for i = 1, 10 do ... end"),
         ("while x < n: print(x)", "a loop is: while x < 3 do ... end"),
         ("if x > n: print(x)", "in Lua: if x > 3 then ... end"),
+        ("a = { k = 1, C = 2 }", ""),
+        ("a.T0", "there is no 'T0' in it: it has C, k"),
         ("run = nondimensional{}:simulate{ theta0 = 1, t_end = 2, dt = 0.1 }", ""),
         ("run:to_csv('x.csv')", "did you mean 'save'?"),
         ("dir(run)", "Tab after a name and a point lists its fields"),
@@ -122,11 +124,20 @@ class Pasted(AtHome):
 
 
 class Blocks(AtHome):
+    def test_a_block_says_what_it_waits_for_and_how_to_leave_it(self):
+        terminal = self.terminal()
+        terminal.type("for i = 1, 2 do\r")
+        terminal.wait(lambda: terminal.row() == ">> line 1 waits for end; Ctrl-C cancels it")
+        terminal.type("f{ i,\r")
+        terminal.wait(lambda: terminal.row() == ">> { of line 2 waits for }; Ctrl-C cancels it")
+        terminal.type("i")
+        terminal.wait(lambda: terminal.row() == ">> i")
+
     def test_an_empty_line_and_words_for_leaving_are_answered(self):
         session = self.session()
         session.enter("for i = 1, 2 do", CONTINUATION)
-        self.assertIn("(the input goes on; Ctrl-C cancels it)", session.enter("", CONTINUATION))
-        self.assertIn("(the input goes on; Ctrl-C cancels it, and :quit then leaves dinal)",
+        self.assertIn("(line 1 waits for end; Ctrl-C cancels it)", session.enter("", CONTINUATION))
+        self.assertIn("(for of line 1 waits for end; Ctrl-C cancels it, and :quit then leaves dinal)",
                       session.enter("quit", CONTINUATION))
         self.assertEqual(session.enter("print(i) end"), "1\n2")
 
@@ -150,22 +161,28 @@ class Words(AtHome):
     def test_hints_teach_what_works(self):
         session = self.session()
         session.enter(RUN)
-        for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "options are in braces: system{ ... }"),
-                           ("max(run.theta)", "of a vector it is v:max()"), ("sin(run.t)", "'math.sin'"),
-                           ("math.sin(2*run.t)", "of a vector it is v:sin()"), ("explain(run)", "x:explain()"),
-                           ("run.events[10].t", "there is no such element"), ("run:events", "a field is written with a point"), ("who", ":who lists your variables"),
+        for line, method in (("max(run.theta)", "run.theta:max()"), ("sin(run.t)", "run.t:sin()"),
+                             ("math.sin(2*run.t)", "(2*run.t):sin()"), ("explain(run)", "run:explain()")):
+            shown = session.enter(line).replace("\n", " ")
+            self.assertIn(f"did you mean '{method}'?", shown)
+            self.assertNotIn("attempt", session.enter(method))
+        for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "write its options in braces: system{ ... }"),
+                           ("run.events[10].t", "'run.events' has 2 elements"), ("who", ":who lists your variables"),
                            ("quit", ":quit or Ctrl-D leaves"),
                            ("5%", "5 percent are 5/100"),
                            ("hilfe", "help() starts a tour"), ("salir", ":quit or Ctrl-D leaves"),
+                           ("run.theta[0]", "('run.theta' has 13 elements, which are counted from 1)"),
+                           ("run.theta[99]", "('run.theta' has 13 elements)"),
+                           ("run.events[1].theat", "there is no 'theat' in it; did you mean 'theta'?"),
                            ("log10(2)", "math.log(x, 10)")):
             self.assertIn(hint, session.enter(line).replace("\n", " "), line)
 
     def test_names_that_are_overwritten_are_noticed_and_come_back(self):
         session = self.session()
-        self.assertIn("(system existed before and is now your variable", session.enter("system = 3"))
+        self.assertIn("(system was a name of dinal", session.enter("system = 3"))
         session.enter("system = dinal.system")
         self.assertEqual(session.enter("system{ I = 1, k = 1 }.omega0"), "1.0")
-        session.enter("math.pi = 3")
+        self.assertIn("(math.pi existed before", session.enter("math.pi = 3"))
         session.enter(":reset")
         self.assertEqual(session.enter("math.pi > 3"), "true")
         self.assertEqual(session.enter("x = { system = 3 }"), "")
@@ -186,6 +203,20 @@ class Words(AtHome):
 
 
 class Typing(AtHome):
+    def test_history_suggests_the_end_of_a_line_and_the_arrow_takes_it(self):
+        terminal = self.terminal()
+        terminal.enter("answer = 6*7")
+        terminal.type("ans")
+        terminal.wait(lambda: terminal.row() == "> answer = 6*7")
+        self.assertEqual(terminal.colour("wer"), "black")  # bright, as pyte calls it
+        terminal.type("x")
+        terminal.wait(lambda: terminal.row() == "> ansx")
+        terminal.type("\x7f")
+        terminal.wait(lambda: terminal.row() == "> answer = 6*7")
+        terminal.type(RIGHT + "+1\r")
+        terminal.enter("")
+        self.assertEqual(terminal.enter("answer"), "43")
+
     def test_tab_after_an_event_and_after_integrator(self):
         session = self.session()
         session.enter(RUN)
@@ -194,6 +225,16 @@ class Typing(AtHome):
         session.press("s = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.5, integrator = integrator.sp\t} }\r")
         session.until_prompt()
         self.assertIn("by spectral", session.enter("s"))
+
+    def test_a_long_text_stops_at_the_end_of_the_page(self):
+        session = self.session(PAGER="less")
+        session.press("?simulate\r")
+        session.child.expect_exact("Space goes on, q ends --")
+        session.press(" ")
+        session.child.expect_exact("lines: Space goes on, q ends --")
+        session.press("q")
+        session.until_prompt()
+        self.assertEqual(session.enter("6 * 7"), "42")
 
     def test_a_window_of_one_row_and_two_columns(self):
         child = pexpect.spawn(PROGRAM, env=environment(self.home), cwd=str(self.home), dimensions=(1, 2), timeout=PATIENCE)
@@ -208,6 +249,20 @@ class Typing(AtHome):
         child.expect(pexpect.EOF)
         child.close()
         self.assertEqual((child.exitstatus, child.signalstatus), (7, None))
+
+    def test_the_next_page_has_the_size_of_the_window_by_then(self):
+        session = self.session(PAGER="less")
+        session.press("?simulate\r")
+        session.child.expect_exact("Space goes on, q ends --")
+        session.child.setwinsize(12, 40)
+        session.press(" ")
+        session.child.expect_exact(" lines: Space goes on")
+        shown = ESCAPES.sub("", session.child.before).splitlines()[:-1]
+        rows = sum(max(1, -(-len(line) // 40)) for line in shown)  # the terminal goes on in the next row
+        self.assertLessEqual(rows, 11, shown)
+        self.assertGreater(rows, 7, shown)
+        session.press("q")
+        session.until_prompt()
 
 
 if __name__ == "__main__":

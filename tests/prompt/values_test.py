@@ -60,10 +60,25 @@ class Values(AtHome):
                 if error:
                     self.assertEqual(terminal.enter(f"('%.2g'):format({name}.std_error.{field})").strip('"'), error, card)
 
-    def test_an_excitation_is_the_lua_text_that_makes_it(self):
-        shown = self.terminal().enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")
-        self.assertEqual(" ".join(shown.split()), "3 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 } - "
-                                                  "excitation.harmonic{ amplitude = 1, omega = 2, phase = 0 }")
+    def test_an_excitation_is_a_formula_and_its_breaks(self):
+        terminal = self.terminal()
+        shown = terminal.enter("3*excitation.pulse{ at = 1.5, width = 0.2 } - excitation.harmonic{ omega = 2 }")
+        self.assertEqual(shown.splitlines(), ["excitation  M(t) =", "    3 for 1.5 <= t < 1.7", "  - sin(2 t)",
+                                              "  jumps or kinks at t = 1.5, 1.7"])
+        self.assertIn("jumps or kinks at t = 0, 1, 2, 3, 4, 5, ...", terminal.enter("excitation.square{ period = 2 }"))
+        for term, formula in [("polynomial{ coefficients = { -1, -0.5, 2 }, at = 0.3 }", "    -1 - 0.5 (t - 0.3) + 2 (t - 0.3)^2"),
+                              ("ramp{ slope = 3, at = -1, duration = 2 }", "    3 (t + 1) for -1 <= t < 1, then 6"),
+                              ("ramp{ slope = -2, at = 1 }", "  - 2 (t - 1) for t >= 1"),
+                              ("harmonic{ amplitude = -2, omega = 3, phase = -0.4 }", "  - 2 sin(3 t - 0.4)"),
+                              ("gaussian{ amplitude = 3, at = 1, sigma = 0.2 }", "    3 exp(-((t - 1)/0.2)^2/2)"),
+                              ("exponential{ amplitude = 2, tau = 0.5, at = -0.5 }", "    2 exp(-(t + 0.5)/0.5) for t >= -0.5"),
+                              ("half_sine{ at = 1, width = 0.5 }", "    sin(pi (t - 1)/0.5) for 1 <= t < 1.5"),
+                              ("square{ period = 1.5, duty = 0.25, at = 1 }",
+                               "    1 square wave of period 1.5 that begins at 1, positive for 0.25 of it"),
+                              ("chirp{ amplitude = 2, from = 1, to = 3, duration = 4, at = 1 }",
+                               "    2 sine of frequency 1 ... 3 for 1 <= t < 5")]:
+            self.assertEqual(terminal.enter("excitation." + term).splitlines()[1], formula)
+        self.assertIn("    function(t) return 2*t end", terminal.enter("excitation.scripted(function(t) return 2*t end)"))
 
     def test_a_run_its_columns_and_events(self):
         terminal = self.terminal()
@@ -140,9 +155,24 @@ class Notices(AtHome):
 
     def test_a_local_variable_that_is_lost_is_noticed_each_time(self):
         terminal = self.terminal()
-        for typed in ("local x = 3", "local a, b = 1, {}"):
-            self.assertEqual(terminal.enter(typed).replace("\n", " "),
-                             "(a local variable ends with the input: to keep it, leave out the word local)", typed)
+        notice = "(local variables end with the input: {} gone. To keep {}, leave out the word local)"
+        for typed, words in [("local x = 3", ("x is", "it")), ("local given = lab.given", ("given is", "it")),
+                             ("local a, b = 1, {}", ("a, b are", "them"))]:
+            self.assertEqual(terminal.enter(typed).replace("\n", " "), notice.format(*words), typed)
+        with open(os.path.join(self.home, "script.lua"), "w", encoding="utf-8") as script:
+            script.write("local sys = nondimensional{}\nrun = sys:simulate{ t_end = 1, dt = 1 }\n")
+        self.assertEqual(terminal.enter(":load script.lua").replace("\n", " "), notice.format("sys is", "it"))
+
+    def test_history_and_edit(self):
+        terminal = self.terminal(EDITOR="sed -i s/1/5/")
+        terminal.enter("x = 1")
+        terminal.enter("y = 2")
+        self.assertEqual(terminal.enter(":history").split(), ["1", "x", "=", "1", "2", "y", "=", "2"])
+        self.assertEqual(terminal.enter(":history 1").split(), ["2", "y", "=", "2"])
+        self.assertEqual(terminal.enter(":edit 1"), "x = 5")
+        self.assertEqual(terminal.enter(":history 1").split(), ["3", "x", "=", "5"])
+        self.assertEqual(terminal.enter("x"), "5")
+        self.assertIn("from 1 to", terminal.enter(":edit 17"))
 
     def test_a_local_variable_that_is_used_is_not(self):
         terminal = self.terminal()
@@ -160,8 +190,8 @@ class Notices(AtHome):
         terminal = self.terminal()
         terminal.enter(SYSTEM)
         terminal.enter(RUN)
-        self.assertIn("a field is written with a point: .events", terminal.enter("run:events").replace("\n", " "))
-        self.assertIn("a method is called", terminal.enter("x = run:at"))
+        self.assertIn("write it with a point, run.events", terminal.enter("run:events"))
+        self.assertIn("run:at(t) -> theta, velocity", terminal.enter("x = run:at"))
         self.assertIn("help() starts a tour", terminal.enter("help"))
 
     def test_a_run_that_failed_before_its_first_row_is_not_announced(self):
@@ -259,8 +289,9 @@ class Commands(AtHome):
         self.assertEqual(terminal.enter("w, type(system), math.pi > 3"), 'nil\t"function"\ttrue'.expandtabs())
         self.assertRegex(terminal.enter(":time 6 * 7"), r"^42\n[0-9.e-]+ s$")
 
-    def test_wrong_names_are_told(self):
+    def test_names_may_be_short_and_wrong_ones_are_told(self):
         terminal = self.terminal()
+        self.assertIn(":save file", terminal.enter(":he"))
         self.assertIn("did you mean 'quit'?", terminal.enter(":qiut"))
         self.assertIn(":help lists them", terminal.enter(":xyz"))
         self.assertIn("write :load file", terminal.enter(":load"))
