@@ -62,7 +62,8 @@ end
 function support.closes(run, what, within)
     local energy = run:energy()
     local total = energy.total
-    if not (total.closure < (within or 1e-11)) then
+    -- Where hardly anything flows only rounding is left.
+    if not (total.closure < (within or 1e-11) or total.closure * total.flow < 1e-15) then
         error(("%senergy closes to %.3g of %.6g"):format(what and what .. ": " or "", total.closure, total.flow), 2)
     end
     return energy
@@ -80,6 +81,115 @@ function support.same_events(a, b, tolerance, what)
         support.equal(a.events[i].kind, event.kind, what)
         support.near(a.events[i].t, event.t, tolerance)
     end
+end
+
+-- A system may be given by the table that it is made of.
+local function made(of) return type(of) == "table" and system(of) or of end
+
+local function fails(level, ...) error(string.format(...), level + 1) end
+
+--- The times of the events of each kind.
+local function event_times(run)
+    local times = {}
+    for _, event in ipairs(run.events) do
+        times[event.kind] = times[event.kind] or {}
+        table.insert(times[event.kind], event.t)
+    end
+    return times
+end
+
+--- Both runs have the same rows, but for rounding, and the same events; turns do not count if they may differ.
+function support.alike(found, wanted, within, what, turns)
+    local what = what and what .. ": " or ""
+    local function list(run)
+        local kinds, times = {}, {}
+        for _, event in ipairs(run.events) do
+            if turns ~= false or event.kind ~= "turn" then
+                kinds[#kinds + 1], times[#times + 1] = event.kind .. " " .. (event.where or ""), event.t
+            end
+        end
+        return kinds, times
+    end
+    local kinds, times = list(found)
+    local other_kinds, other_times = list(wanted)
+    local told, expected = table.concat(kinds, ", "), table.concat(other_kinds, ", ")
+    if told ~= expected then fails(2, "%swanted the events %s, found %s", what, expected:sub(1, 300), told:sub(1, 300)) end
+    for i, t in ipairs(times) do
+        local off = math.abs(t - other_times[i])
+        if not (off <= 100 * within * math.max(1, t)) then fails(2, "%s%s at t = %.15g differs by %g", what, kinds[i], t, off) end
+    end
+    for _, name in ipairs(wanted.names) do
+        if name:find "theta$" or name:find "velocity$" then
+            local a, b = found:column(name), wanted:column(name)
+            local off = #a == #b and #a > 0 and (a - b):abs():max() or #a == #b and 0 or math.huge
+            if not (off <= within * math.max(1, #b > 0 and b:abs():max() or 0)) then fails(2, "%s%s differs by %g", what, name, off) end
+        end
+    end
+end
+
+-- A run in two parts.
+local function in_parts(sys, task, t_end)
+    local from = task.t_start or 0
+    local cut = from + 0.4371 * (t_end - from)
+    local first, rest = { t_end = cut }, { t_end = t_end }
+    if task.times then
+        first.times, rest.times = {}, {}
+        for _, t in ipairs(task.times) do table.insert(t <= cut and first.times or rest.times, t) end
+    else
+        first.dt = task.dt or (task.t_end - from) / 1000
+    end
+    return sys:simulate(support.merged(task, first)):continue(rest)
+end
+
+--- Runs `sys`, a system or its table, and returns the run, which must be as `wanted` says: a column at the end (a number),
+-- at each row (a vector, or a function of t and of the run, nil where anything goes), and the times of all events of a kind,
+-- or their number. `status` is that of the run, by default one that reached its end; `most` a limit of the number of events;
+-- `story` what explain() must say; `within` the tolerance, 1e-12 by default. In two parts the run is the same within
+-- `parts` (false: it is not tried), and its energy adds up within `closes` (false: not looked at).
+function support.expect(sys, task, wanted, what)
+    local sys, wanted, what = made(sys), wanted or {}, what and what .. ": " or ""
+    local within, run = wanted.within or 1e-12, sys:simulate(task)
+    local ended = run.status == "end" or run.status == "stuck" or run.status == "rest"
+    if wanted.status and run.status ~= wanted.status or not wanted.status and not ended then
+        fails(2, "%swanted the status %s, found %s: %s", what, wanted.status or "end", run.status, run.outcome)
+    end
+    if wanted.most and #run.events >= wanted.most then fails(2, "%s%d events", what, #run.events) end
+    if wanted.story then support.says(run, table.unpack(wanted.story)) end
+    local times, kinds = event_times(run), " stick slip rest turn switch impact release open close user "
+    local own = { within = true, status = true, most = true, story = true, parts = true, closes = true }
+    for name, value in pairs(wanted) do
+        if kinds:find(" " .. name .. " ", 1, true) then
+            local found = times[name] or {}
+            local count = type(value) == "number" and value or #value
+            if #found ~= count then fails(2, "%swanted %d events %s, found %d: %s", what, count, name, #found, table.concat(found, " ")) end
+            for i, t in ipairs(type(value) == "table" and found or {}) do
+                local off = math.abs(t - value[i])
+                if not (off <= within * math.max(1, math.abs(t))) then fails(2, "%s%s at t = %.17g, wanted %.17g", what, name, t, value[i]) end
+            end
+        elseif not own[name] then
+            local column = run:column(name)
+            local function check(i, x)
+                local found = column[i]
+                if x and not (math.abs(found - x) <= within) then
+                    fails(3, "%swanted %s = %.17g within %g at t = %.17g, found %.17g", what, name, x, within, run.t[i], found)
+                end
+            end
+            if type(value) == "number" then
+                check(#column, value)
+            else
+                for i, t in ipairs(run.t) do check(i, type(value) == "function" and value(t, run) or type(value) ~= "function" and value[i]) end
+            end
+        end
+    end
+    if run.status == "failed" or run.status == "stopped" then return run end
+    if wanted.closes ~= false then support.closes(run, what, wanted.closes) end
+    if wanted.parts ~= false then support.alike(in_parts(sys, task, run.t_end), run, wanted.parts or 1e-8, what .. "in two parts") end
+    return run
+end
+
+--- A test of one run, see expect().
+function support.moves(sentence, sys, task, wanted)
+    support.test(sentence, function() support.expect(sys, task, wanted) end)
 end
 
 --- The function must raise a string with all these pieces (plain text, no patterns) in it. Returns the message.
