@@ -253,4 +253,39 @@ test("a mass that a pulse moves less each period comes to hold, alone and beside
     equal(run.t_end, 300 * T)
 end)
 
+local waves, by_panels = excitation.harmonic { amplitude = 0.8, omega = 0.7 }, integrator.spectral {}
+
+test("the energy adds up under every law, and rows contain its friction", function()
+    local function quadratic(v) return 0.25 + 0.1 * v ^ 2 end
+    for name, case in pairs {
+        coulomb = { friction.coulomb { Rd = 0.25, Re = 0.6 }, function() return 0.25 end },
+        asymmetric = { friction.asymmetric { forward = { Rd = 0.1, Re = 0.3 }, backward = { Rd = 0.35, Re = 0.5 } }, function(v) return v > 0 and 0.1 or 0.35 end },
+        stribeck = { stribeck, function(v) return 0.25 + 0.35 * math.exp(-(v / 0.4) ^ 2) end },
+        tustin = { friction.stribeck { Rd = 0.25, Re = 0.6, speed = 0.4, shape = 1 }, function(v) return 0.25 + 0.35 * math.exp(-math.abs(v) / 0.4) end },
+        table = { friction.table { speed = { 0, 0.5, 2 }, torque = { 0.45, 0.2, 0.35 }, Re = 0.6 }, function(v)
+            v = math.abs(v)
+            return v < 0.5 and 0.45 - 0.5 * v or math.min(0.35, 0.2 + 0.1 * (v - 0.5))
+        end },
+        ["function"] = { friction.law(quadratic, { Re = 0.6 }), quadratic },
+    } do
+        local law, torque = table.unpack(case)
+        local run = expect({ I = 1, k = 1, C = 0.02, friction = law }, { M = waves, theta0 = 1.3, t_end = 60, dt = 0.5, integrator = by_panels },
+            { within = 1e-15, closes = 1e-12, friction = function(t, of)
+                local v = of.velocity[math.tointeger(t // 0.5) + 1]
+                return v > 0 and -torque(v) or v < 0 and torque(v)
+            end }, name)
+        local total = run:energy().total
+        assert(total.dry > 0.1 * total.flow and total.input > 0.1 * total.flow, name) -- what M did, not what it did less friction
+    end
+end)
+
+test("a law with equal numbers in both directions is Coulomb's, bit for bit", function()
+    local twice = friction.asymmetric { forward = { Rd = 0.1, Re = 0.2 }, backward = { Rd = 0.1, Re = 0.2 } }
+    for _, by in ipairs { integrator.exact {}, by_panels, integrator.rk4 { h = 0.01 } } do
+        local function run(own) return system(merged({ I = 1, k = 1 }, own)):simulate { M = excitation.harmonic { amplitude = 0.5, omega = 1.3 }, theta0 = 1, t_end = 50, dt = 0.1, integrator = by } end
+        local one, other = run { Rd = 0.1, Re = 0.2 }, run { friction = twice }
+        for _, name in ipairs(one.names) do equal(one[name], other[name], name) end
+    end
+end)
+
 finish()

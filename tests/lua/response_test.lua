@@ -456,4 +456,37 @@ test("a period may be given as period, frequency or omega in every call", functi
     equal(#run:poincare{ omega = 0.8 * math.pi, from = 50 }, 5)
 end)
 
+test("a motion stays on its branch before the fold, and leaves it after the fold", function()
+    local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.1, spring = spring.polynomial{ [3] = 0.5 } }
+    local c = sys:response{ amplitude = 0.5, over = { frequency = vector.linspace(0.19, 0.38, 8) } }
+    local jump = c.jumps:filter(function(row) return row.sweep == "up" end)[1]
+    for _, off in ipairs{ -2e-3, 2e-3 } do
+        local f = jump.frequency + off
+        local M = excitation.harmonic{ amplitude = 0.5, frequency = f }
+        local start = sys:steady{ M = excitation.harmonic{ amplitude = 0.5, frequency = jump.frequency - 1e-4 }, theta0 = -jump.from }
+        local run = sys:simulate{ M = M, theta0 = start.run.theta[1], velocity0 = start.run.velocity[1], t_end = 120 / f, dt = 120 / f, integrator = integrator.rk4{ h = 0.02 } }
+        local high = run.events:filter(function(e) return e.t > 115 / f end).theta:abs():max()
+        assert(off < 0 and high > 0.8 * jump.from or off > 0 and math.abs(high - jump.to) < 0.05 * jump.to, off .. ": " .. high)
+    end
+end)
+
+test("with Re > Rd a mass breaks away where M passes Re, and comes to rest elsewhere on the way back", function()
+    local sys = system{ I = 1, k = 1, C = 0.05, Rd = 0.2, Re = 0.3 }
+    for _, up in ipairs{ true, false } do
+        local jumps = sys:response{ frequency = 0.1, over = { amplitude = up and vector.linspace(0.02, 1.2, 31) or vector.linspace(1.2, 0.02, 31) } }.jumps
+        equal(table.concat(jumps.sweep, " "), up and "down up" or "down")
+        for _, jump in ipairs(jumps) do
+            if jump.sweep == "up" then
+                near(jump.M0, 0.3, 1e-8)
+                equal(jump.from, 0.0)
+            else -- just above it goes on moving, just below it does not
+                equal(jump.to, 0.0)
+                assert(jump.M0 < 0.3)
+                local above = sys:steady{ M = excitation.harmonic{ amplitude = jump.M0 + 2e-3, frequency = 0.1 }, theta0 = jump.from }
+                assert(above.status == "steady" and above.amplitude > 0.8 * jump.from)
+            end
+        end
+    end
+end)
+
 finish()

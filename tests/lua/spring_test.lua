@@ -109,4 +109,31 @@ test("the energy of a spring like a staircase is its integral, also where sample
     end
 end)
 
+test("the energy of springs is their integral and adds up", function()
+    for i, case in ipairs {
+        { spring.polynomial { [3] = 0.5 }, function(x) return x ^ 4 / 8 end },
+        { spring.polynomial { [1] = -0.5, [2] = 0.2, [5] = 0.3 }, function(x) return -x ^ 2 / 4 + x ^ 3 / 15 + x ^ 6 / 20 end },
+        { math.sin, function(x) return 1 - math.cos(x) end },
+        { function(x) return math.abs(x) < 0.3 and 0 or 4 * (x - (x > 0 and 0.3 or -0.3)) end, function(x) return 2 * math.max(0, math.abs(x) - 0.3) ^ 2 end },
+    } do
+        local run = expect({ I = 1, k = 0.8, C = 0.03, Rd = 0.05, Re = 0.1, spring = case[1] },
+            { M = excitation.harmonic { amplitude = 0.8, omega = 0.7 }, theta0 = 1.3, t_end = 60, dt = 0.5 }, { closes = 1e-11 }, i)
+        local energy = run:energy()
+        for row, theta in ipairs(run.theta) do near(energy.spring[row], 0.4 * theta ^ 2 + case[2](theta), 1e-14) end
+        near(energy.error:abs():max(), 0, 1e-11 * energy.total.flow)
+    end
+end)
+
+test("the steady motion of Duffing's oscillator is the limit of a long run, or a place where the spring pulls little enough", function()
+    local M, period = excitation.harmonic { omega = 0.8 }, 2.5 * math.pi
+    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.05, spring = spring.polynomial { [3] = 1 } }
+    local s, long = sys:steady { M = M }, sys:simulate { M = M, times = { 60 * period }, t_end = 60 * period }
+    assert(s.status == "steady" and s.stable and s.symmetric)
+    near(s.run.theta[1], long.theta[1], 1e-9)
+    near(s.run.velocity[1], long.velocity[1], 1e-9)
+    local rest = system { I = 1, k = 1, Rd = 0.5, spring = spring.polynomial { [3] = 1 } }:steady { M = 0.3 * M }.rest
+    near(rest.upper + rest.upper ^ 3, 0.2, 1e-9)
+    near(rest.lower, -rest.upper, 1e-9)
+end)
+
 finish()

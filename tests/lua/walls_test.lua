@@ -314,4 +314,46 @@ test("a body without a load stays at its wall while rounding lets an elastic sto
     closes(run)
 end)
 
+-- With what each is right to: times and velocities of impacts.
+local at_walls = { { integrator.spectral {}, 1e-11 }, { integrator.rk4 { h = 0.002 }, 1e-7 } }
+
+test("a belt carries the mass against the wall and slides along it", function()
+    local vb, Rd = 0.5, 0.3
+    for _, e in ipairs { 0, 0.6 } do
+        for _, method in ipairs(at_walls) do
+            -- Thrown back with e vb, friction of the belt brings it back in 2 e vb/Rd, and so on; then it presses with Rd.
+            local rest = 2 + 2 * e * vb / Rd / (1 - e)
+            local function leans(x) return function(t) return t > rest + 1e-6 and t < 23 and x end end
+            local run = expect({ I = 1, k = 0, Rd = Rd, Re = 0.4, walls = { upper = 1, restitution = e } },
+                { M = excitation.ramp { slope = -0.1, at = 20 }, belt = vb, velocity0 = vb, t_end = 30, dt = 0.5, integrator = method[1] },
+                { slip = { 23 }, theta = leans(1), velocity = leans(0), friction = leans(Rd), within = 1e-12 }, e)
+            near(of_kind(run, "stick")[1].t, rest, 4 * method[2])
+            local first = run.events[1]
+            equal(first.kind, "impact")
+            near(first.t, 2, method[2])
+            near(first.velocity, vb, method[2])
+        end
+    end
+end)
+
+test("states are integrated while the mass leans, user events see impacts, and M of a state takes the mass off", function()
+    local own = { I = 1, k = 0, walls = { upper = 0.5, restitution = 0 } }
+    expect(own, { velocity0 = 1, t_end = 4, dt = 0.5, states = { z = { rate = function(t, theta) return theta end } },
+        events = { { name = "down", when = function(t, theta, v) return v end } } }, { z = 0.125 + 0.5 * 3.5 })
+    expect(own, { M = function(t, theta, v, z) return 1 - z.z end, theta0 = 0.5, t_end = 5, dt = 0.5,
+        states = { z = { rate = function(t, theta) return theta end } } }, { slip = { 2 } })
+end)
+
+test("a mass that begins at a wall rests there, leaves it or hits it at once, and a load that only touches the limit lets it rest", function()
+    for _, method in ipairs(at_walls) do
+        local function go(task, wanted, within) expect({ I = 1, k = 0, walls = { lower = -1, upper = 1, restitution = 0.5 } },
+            merged({ theta0 = 1, t_end = 1, dt = 1, integrator = method[1] }, task), merged({ within = within or method[2] }, wanted)) end
+        go({ M = 1, t_end = 5 }, { status = "rest", events = 0, theta = 1 })
+        go({ M = -1 }, { events = 0, theta = 0.5 })
+        go({ velocity0 = 1 }, { impact = { 0 }, events = 1, theta = 0.5, velocity = function(t) return t == 0 and -0.5 end })
+        -- 1 + cos t comes down to 0 once in a turn, where it neither presses nor pulls.
+        go({ M = excitation.harmonic { omega = 1, phase = math.pi / 2 } + 1, t_end = 20 }, { status = "rest", theta = 1 }, 1e-12)
+    end
+end)
+
 finish()
