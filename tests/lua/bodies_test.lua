@@ -96,6 +96,12 @@ test("accelerations are those of the equation of motion, and 0 where a body is h
     equal(run.b.velocity[9], 0.0)
     equal(run.b.acceleration[9], 0.0)
     equal(run.link.acceleration, nil)
+    -- of a named body by rk4, also where the general engine has taken over from its steps
+    for _, M in ipairs { function(t, theta, v) return v.a > 0 and -0.5 or 0.5 end, function(t, theta, v) return math.sin(t) - v.a end } do
+        local a = system { bodies = { a = { I = 1, k = 4, C = 0.1, Rd = 0.3 } } }:simulate { M = { a = M }, theta0 = { a = 0.4 }, t_end = 3, dt = 0.5,
+            integrator = integrator.rk4 { h = 0.01 } }.a
+        near(a.acceleration, a.M - 4 * a.theta + a.friction + a.damping, 1e-14)
+    end
     -- of one body whose friction varies
     local one = system { I = 2, k = 3, Rd = function() return 0.3 end }:simulate { theta0 = 1, t_end = 1,
         states = { e = { rate = function() return 1 end } } }
