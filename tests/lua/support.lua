@@ -128,15 +128,15 @@ function support.alike(found, wanted, within, what, turns)
 end
 
 -- A run in two parts.
-local function in_parts(sys, task, t_end)
-    local from = task.t_start or 0
+local function in_parts(sys, task, whole)
+    local from, t_end = task.t_start or 0, whole.t_end
     local cut = from + 0.4371 * (t_end - from)
     local first, rest = { t_end = cut }, { t_end = t_end }
     if task.times then
         first.times, rest.times = {}, {}
         for _, t in ipairs(task.times) do table.insert(t <= cut and first.times or rest.times, t) end
     else
-        first.dt = task.dt or (task.t_end - from) / 1000
+        first.dt = task.dt or (t_end - from) / (#whole - 1)
     end
     return sys:simulate(support.merged(task, first)):continue(rest)
 end
@@ -187,7 +187,7 @@ function support.expect(sys, task, wanted, what)
     local method = tostring(run.integrator)
     if run.status == "failed" or run.status == "stopped" or not method:find "exact" and not method:find "spectral" then return run end
     if wanted.closes ~= false then support.closes(run, what, wanted.closes) end
-    if wanted.parts ~= false then support.alike(in_parts(sys, task, run.t_end), run, wanted.parts or 1e-8, what .. "in two parts") end
+    if wanted.parts ~= false then support.alike(in_parts(sys, task, run), run, wanted.parts or 1e-8, what .. "in two parts") end
     return run
 end
 
