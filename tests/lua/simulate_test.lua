@@ -108,4 +108,36 @@ test("without dt and times a short run has 1001 rows, and a continued one keeps 
     equal(nd:simulate { theta0 = 1, t_end = 1 }.theta[501], nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta[501])
 end)
 
+
+test("rows lie at t_start + i dt and the last one at t_end, exactly, whatever h and dt", function()
+    local sys = nondimensional { zeta = 0.1 }
+    local function times(t_start, t_end, dt, by) return sys:simulate { theta0 = 1, t_start = t_start, t_end = t_end, dt = dt, integrator = by }.t end
+    equal(times(0, 1, 0.25), vector { 0, 0.25, 0.5, 0.75, 1 })
+    equal(times(-1, 0.5, 0.5), vector { -1, -0.5, 0, 0.5 })
+    equal(times(0, 1, 0.4), vector { 0, 0.4, 0.8, 1 })
+    equal(times(0, 1, 5), vector { 0, 1 })
+    for _, t_end in ipairs { 1, 0.77, 3.14159 } do
+        for _, dt in ipairs { 0.01, 0.0123, 0.5, 7 } do
+            local wanted = times(0, t_end, dt)
+            equal(wanted[#wanted], t_end)
+            for _, h in ipairs { 0.01, 0.0031, 0.02 } do
+                for _, by in ipairs { integrator.rk4 { h = h }, integrator.dinal1989 { h = h } } do equal(times(0, t_end, dt, by), wanted) end
+            end
+        end
+    end
+    -- A dt that divides the window to rounding leaves no tiny last interval; late times are rounded by more than the division is.
+    for _, dt in ipairs { 0.1, 0.01, 0.001, 0.3, 0.7, 1 / 3, 1e-3 / 3, 8.0299443320945283e-07 } do
+        for _, n in ipairs { 1, 3, 7, 10, 100, 1000, 12345 } do
+            local t = times(0, n * dt, dt)
+            equal(#t, n + 1, dt)
+            equal(t[n + 1], n * dt)
+        end
+        for _, start in ipairs { 0.1, 1e3 + 0.1, -149121.09375, 1e6 + 1 / 3, 1e9 + 0.7 } do
+            if dt >= 2 ^ -47 * math.abs(start) then equal(#times(start, start + 16 * dt, dt), 17, start) end
+        end
+    end
+    equal(#times(0, 0.3, 0.1), 4) -- 3 * 0.1 > 0.3
+    raises_here(function() sys:simulate { t_start = 1e9, t_end = 1e9 + 1e-3, dt = 1e-8 } end, "dt = 1e-08", "rounding")
+end)
+
 finish()

@@ -7,12 +7,26 @@ test("a system shows its given values; C and Rd are zero and Re is Rd unless giv
     equal(system { I = 1, k = 1, Rd = 3 }.Re, 3.0)
 end)
 
-test("the regime is undamped, underdamped, critical or overdamped, and only a swinging system has omega1", function()
-    for C, regime in pairs { [0] = "undamped", [3.9] = "underdamped", [4] = "critical", [4.1] = "overdamped" } do
-        local sys = system { I = 1, k = 4, C = C }
+test("the regime is decided exactly, and only a swinging system has omega1", function()
+    for C, regime in pairs { [0] = "undamped", [12 - 2 ^ -49] = "underdamped", [12] = "critical", [12 + 2 ^ -49] = "overdamped" } do
+        local sys = system { I = 4, k = 9, C = C }
         equal(sys.regime, regime)
-        equal(sys.omega1 ~= nil, C < 4)
+        equal(sys.omega1 ~= nil, C < 12)
     end
+    equal(system { I = 4, k = 9, C = 12 }.zeta, 1.0)
+end)
+
+test("the report's system has the values that DINAL printed, and parameters too far apart are refused", function()
+    local sys = system { I = 1, k = 39.48, C = 3, Rd = 6.6 }
+    for name, value in pairs { omega0 = 6.283311, T0 = 0.99998, zeta = 0.2387276 } do near(sys[name] / value, 1, 1e-6) end
+    local Mc = sys:characteristic_torque(0, 6.2832) -- k sqrt(theta0^2 + (v0/w0)^2)
+    near(Mc, 39.4793, 4e-4)
+    near(sys:friction_ratio(Mc), 0.167176, 2e-6)
+    equal(sys:friction_ratio(-Mc), sys:friction_ratio(Mc))
+    equal(sys:characteristic_torque(-2), 2 * 39.48)
+    local tiny = system { I = 1e-200, k = 1e-200, C = 2e-200 }
+    near(tiny.omega0 + tiny.zeta, 2, 1e-12)
+    refuses(system, { { { I = 1e-300, k = 1e300 }, "too far apart" }, { { I = 1e300, k = 1e-300 }, "too far apart" } })
 end)
 
 test("the nondimensional system has k = 1, T0 = 1, and the given ratios", function()
