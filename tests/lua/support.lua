@@ -196,6 +196,37 @@ function support.moves(sentence, sys, task, wanted)
     support.test(sentence, function() support.expect(sys, task, wanted) end)
 end
 
+--- Searches the steady motion of `sys` and returns it. Its members must be as `wanted` says, by their paths as in
+-- ["a.rest.upper"]: numbers within `within`, 1e-9 by default; those named in `none` are nil, and `story` is in explain().
+-- A motion that comes again in place is where it was after its period.
+function support.finds(sys, task, wanted, what)
+    local what, within = what and what .. ": " or "", wanted.within or 1e-9
+    local s, own = made(sys):steady(task), { within = true, none = true, story = true }
+    local function member(path)
+        local found = s
+        for name in path:gmatch "[^.]+" do found = found[tonumber(name) or name] end
+        return found
+    end
+    for path, value in pairs(wanted) do
+        local found = not own[path] and member(path)
+        local good = own[path] or found == value or type(value) == "number" and type(found) == "number" and math.abs(found - value) <= within
+        if not good then fails(2, "%swanted %s = %s, found %s in\n%s", what, path, tostring(value), tostring(found), s:explain()) end
+    end
+    for _, path in ipairs(wanted.none or {}) do
+        if member(path) ~= nil then fails(2, "%s%s is not nil", what, path) end
+    end
+    if wanted.story then support.says(s, table.unpack(wanted.story)) end
+    local run = s.status == "steady" and s.run
+    for _, name in ipairs(run and run.names or {}) do
+        local theta = name:find "theta$" and run:column(name)
+        local again = not theta or name ~= "theta" and not s[name:match "^(.*)%.theta$"].amplitude or name == "theta" and not s.amplitude
+        if not again and not (math.abs(theta[#theta] - theta[1]) <= 1e-6 * math.max(1e-3, theta:abs():max())) then
+            fails(2, "%s%s does not come again: %.17g and %.17g", what, name, theta[1], theta[#theta])
+        end
+    end
+    return s
+end
+
 --- The function must raise a string with all these pieces (plain text, no patterns) in it. Returns the message.
 function support.raises(body, ...)
     local ok, message = pcall(body)
