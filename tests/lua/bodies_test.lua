@@ -64,7 +64,7 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     equal(next(states), nil)
     local dahl = system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } }
     equal(tostring(dahl), "system{ I = 1, k = 1, friction = friction.dahl{ Rd = 1, stiffness = 10 } }")
-    raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
+    refused { { "friction.dahl { Rd = 0, stiffness = 10 }", "Rd = 0 must be positive" } }
 end)
 
 test("continuing one body continues the run of all bodies", function()
@@ -152,14 +152,16 @@ test("mistakes are named with the body or link, and the nearest name", function(
         raises(function() rig:simulate(case[1]) end, table.unpack(case, 2))
     end
     local run, nothing = rig:simulate { t_end = 1 }, system { bodies = { a = { I = 1, Rd = 1, normal = function() return 0 / 0 end } } }
-    raises_here(function() return run.laod end, "this run has no 'laod'", "did you mean 'load'?")
-    raises_here(function() return run.theta end, "theta is of one body or link: run.load.theta")
-    raises_here(function() return run:cycle() end, "cycle is of one body or link: run.load:cycle")
-    raises_here(function() return run:spectrum() end, "theta is of one body or link: run.load.theta")
-    raises_here(function() return run:spectrum "load.thta" end, "there is no column 'thta'", "did you mean 'theta'?")
-    raises_here(function() return run:spectrum "thta" end, "there is no column 'thta'")
-    raises_here(function() plot { run, show = false } end, "theta is of one body or link: run.load.theta")
-    raises_here(function() identify { data = run } end, "a run of several bodies needs system = ..., or data = run.load alone")
+    refused {
+        { "run.laod", "this run has no 'laod'", "did you mean 'load'?" },
+        { "run.theta", "theta is of one body or link: run.load.theta" },
+        { "run:cycle()", "cycle is of one body or link: run.load:cycle" },
+        { "run:spectrum()", "theta is of one body or link: run.load.theta" },
+        { 'run:spectrum "load.thta"', "there is no column 'thta'", "did you mean 'theta'?" },
+        { 'run:spectrum "thta"', "there is no column 'thta'" },
+        { "plot { run, show = false }", "theta is of one body or link: run.load.theta" },
+        { "identify { data = run }", "a run of several bodies needs system = ..., or data = run.load alone" },
+    }
     refuses(system, { { { bodies = { events = { I = 1 } } }, "bodies: 'events' is a name that a run has already" } })
     raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
 end)
@@ -246,7 +248,7 @@ test("at(t) of a failed run states why it ended, for one body and for several", 
             pcall(sys.simulate, sys, { M = tostring(sys):find "bodies" and { a = M } or M, t_end = 5 })
             local run = dinal.partial
             equal(run.status, "failed")
-            raises_here(function() run:at(4) end, "t = 4 is outside the run from 0 to", "it ended there: M failed or became infinite")
+            refused { { "run:at(4)", "t = 4 is outside the run from 0 to", "it ended there: M failed or became infinite" } }
             assert(run:at(0))
         end
     end
@@ -264,9 +266,11 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(rig.shaft.omega0, 2.0)
     equal(rig.shaft.walls.upper, 1.0)
     equal(rig.motor.Rd, 1.0)
-    raises_here(function() return rig.motor.dead_zone end, "no constant dead_zone: its normal is a function")
-    raises_here(function() return rig.laod end, "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?")
-    raises_here(function() return rig.omega0 end, "omega0 is of one body or link: sys.load.omega0")
+    refused {
+        { "rig.motor.dead_zone", "no constant dead_zone: its normal is a function" },
+        { "rig.laod", "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?" },
+        { "rig.omega0", "omega0 is of one body or link: sys.load.omega0" },
+    }
     local other = rig:with { bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 27 } } }
     equal(other.load.Rd, 0.5)
     equal(other.load.Re, 2.0)
@@ -275,12 +279,14 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(other.shaft.C, 0.5)
     equal(tostring(other:with { bodies = { load = { Rd = 1 } }, links = { shaft = { k = 3 } } }), tostring(rig))
     equal(rig:with { units = { t = "min" } }.units.t, "min")
-    raises_here(function() rig:with { bodies = { laod = { Rd = 1 } } } end, "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?")
-    raises_here(function() rig:with { links = { load = { Rd = 1 } } } end, "links: there is no link 'load'; there is shaft")
-    raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "sys:with: bodies.load has no option 'rd'")
-    raises_here(function() rig:with { bodies = { load = 3 } } end, "bodies.load must be a table such as { k = 3 }, got 3")
-    raises_here(function() rig.with { links = {} } end, "use a colon: sys:with")
-    raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }")
+    refused {
+        { "rig:with { bodies = { laod = { Rd = 1 } } }", "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?" },
+        { "rig:with { links = { load = { Rd = 1 } } }", "links: there is no link 'load'; there is shaft" },
+        { "rig:with { bodies = { load = { rd = 1 } } }", "sys:with: bodies.load has no option 'rd'" },
+        { "rig:with { bodies = { load = 3 } }", "bodies.load must be a table such as { k = 3 }, got 3" },
+        { "rig.with { links = {} }", "use a colon: sys:with" },
+        { "rig:with { k = 1 }", "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }" },
+    }
 end)
 
 test("several bodies accept spectral and rk4, and exact says that it is for one body", function()
@@ -299,18 +305,18 @@ test("several bodies accept spectral and rk4, and exact says that it is for one 
     equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
     near(long.b.theta, rk4.b.theta, 1e-8)
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
+    refused {
+        { "rig:simulate { t_end = 12, integrator = integrator.exact {} }", "integrator.exact is for one body with constant friction: use integrator.spectral or rk4" },
+        { "rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } }", "h = 5" },
+    }
     -- each body alone would be stable with this h, and their common mode is not
     local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }
-    raises_here(function() stiff:simulate { theta0 = { a = 1e-3 }, t_end = 1, integrator = integrator.rk4 { h = 0.0025 } } end,
-        "h = 0.0025 exceeds the stability limit 0.002 of rk4 (w0 = 1414.21, zeta = 0): use h <= 0.002")
+    refused { { "stiff:simulate { theta0 = { a = 1e-3 }, t_end = 1, integrator = integrator.rk4 { h = 0.0025 } }", "h = 0.0025 exceeds the stability limit 0.002 of rk4 (w0 = 1414.21, zeta = 0): use h <= 0.002" } }
     local damped = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", C = 1e4 } } }
-    raises_here(function() damped:simulate { velocity0 = { a = 1 }, t_end = 1, integrator = integrator.rk4 { h = 2e-4 } } end,
-        "exceeds the stability limit")
+    refused { { "damped:simulate { velocity0 = { a = 1 }, t_end = 1, integrator = integrator.rk4 { h = 2e-4 } }", "exceeds the stability limit" } }
     near(stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1, integrator = integrator.rk4 { h = 1e-5 } }.a.theta,
         stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1 }.a.theta, 1e-9)
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } } end, "lost in the rounding of times")
+    refused { { "rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } }", "lost in the rounding of times" } }
 end)
 
 test("each body and link has the states, and the events of the user with its own angle and velocity", function()
@@ -342,11 +348,13 @@ test("a body or link may be called like a field of one body, but not like a meth
     equal(rig.friction.Rd, 1.0)
     equal(#rig.links, 2)
     equal(#system { I = 1, k = 1 }.bodies, 0)
-    raises_here(function() system { bodies = { with = { I = 1 } } } end, "'with' is a name that a system has already")
-    raises_here(function() system { bodies = { links = { I = 1 } } } end, "'links' is a name that a system has already")
-    raises_here(function() return rig.damping end, "this system has no 'damping'; its bodies and links are")
-    raises_here(function() rig:characteristic_torque(1) end, "needs one body, and this system has names: take one of them, such as sys.a")
-    raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
+    refused {
+        { "system { bodies = { with = { I = 1 } } }", "'with' is a name that a system has already" },
+        { "system { bodies = { links = { I = 1 } } }", "'links' is a name that a system has already" },
+        { "rig.damping", "this system has no 'damping'; its bodies and links are" },
+        { "rig:characteristic_torque(1)", "needs one body, and this system has names: take one of them, such as sys.a" },
+        { "theory.extremes { system = rig, theta0 = 1 }", "theory.extremes: needs one body" },
+    }
 end)
 
 test("a body that M cannot move again is at rest, also with a name, and with a state that nothing asks", function()

@@ -141,16 +141,15 @@ end)
 
 test("a function of the time needs a period, and one that does not depend on it needs none", function()
     local sys = system{ I = 1, k = 4, Rd = 0.1 }
-    raises_here(function() sys:steady{ belt = function(t) return math.sin(t^2) end } end, "the period of M is not known")
+    refused { { "sys:steady{ belt = function(t) return math.sin(t^2) end }", "the period of M is not known" } }
     near(sys:steady{ belt = function(t) return math.sin(t) end }.period, 2 * math.pi, 1e-12)
-    raises_here(function() sys:steady{ states = { e = { rate = function(t) return math.sin(t) end } } } end,
-        "the period of M is not known")
-    raises_here(function() sys:steady{ belt = function(t) return math.sin(t) end, period = 3 } end,
-        "belt does not repeat itself after period = 3")
-    raises_here(function() sys:steady{ states = { e = { rate = 3 } } } end, "sys:steady: states.e: rate must be")
+    refused {
+        { "sys:steady{ states = { e = { rate = function(t) return math.sin(t) end } } }", "the period of M is not known" },
+        { "sys:steady{ belt = function(t) return math.sin(t) end, period = 3 }", "belt does not repeat itself after period = 3" },
+        { "sys:steady{ states = { e = { rate = 3 } } }", "sys:steady: states.e: rate must be" },
+    }
     equal(sys:steady{ belt = function() return 0 end, theta0 = 2 }.status, "rest")
-    raises_here(function() sys:steady{ M = excitation.relay{ on = 1, off = 2, amplitude = { 1, 2 }, of = "x" } } end,
-        "the relay looks at 'x'")
+    refused { { 'sys:steady{ M = excitation.relay{ on = 1, off = 2, amplitude = { 1, 2 }, of = "x" } }', "the relay looks at 'x'" } }
 end)
 
 test("an event without an act changes neither the cycle nor its story", function()

@@ -100,7 +100,7 @@ test("a step far beyond stability is a result of dinal1989, not an error", funct
     local run = nondimensional {}:simulate { theta0 = 1, t_end = 5000, dt = 1, integrator = by_1989(1) }
     has(run.outcome, "the state became infinite")
     assert(#run > 10 and run.theta:abs():max() < math.huge)
-    raises(function() nondimensional {}:simulate { theta0 = 1, t_end = 50, dt = 1, integrator = integrator.rk4 { h = 1 } } end, "stability limit")
+    refused { { "nondimensional {}:simulate { theta0 = 1, t_end = 50, dt = 1, integrator = integrator.rk4 { h = 1 } }", "stability limit" } }
 end)
 
 test("the last row of dinal1989 is the state at t_end, not that of the step beyond it", function()

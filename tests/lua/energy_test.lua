@@ -60,17 +60,21 @@ end)
 
 test("runs that have not kept their motion say what to do", function()
     local rk4 = sys:simulate { M = M, t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.01 } }
-    raises_here(function() rk4:energy() end, "run:energy(): ", "integrator.exact and integrator.spectral")
+    refused { { "rk4:energy()", "run:energy(): ", "integrator.exact and integrator.spectral" } }
     local sparse = sys:simulate { M = M, t_end = 1, dt = 0.1, dense = false }
-    raises_here(function() sparse:energy() end, "without dense = false")
-    raises_here(function() reloaded(run):energy() end, "read from a file", "simulate the system again")
-    raises_here(function() run.energy() end, "use a colon: run:energy()")
+    refused {
+        { "sparse:energy()", "without dense = false" },
+        { "reloaded(run):energy()", "read from a file", "simulate the system again" },
+        { "run.energy()", "use a colon: run:energy()" },
+    }
 end)
 
 test("misspelt names are errors with a suggestion", function()
-    raises_here(function() return energy.imput end, "did you mean 'input'?")
-    raises_here(function() return energy.halfcycles end, "did you mean 'half_cycles'?")
-    raises_here(function() energy.input = 1 end, "cannot be changed")
+    refused {
+        { "energy.imput", "did you mean 'input'?" },
+        { "energy.halfcycles", "did you mean 'half_cycles'?" },
+        { "energy.input = 1", "cannot be changed" },
+    }
 end)
 
 test("the complete part of a failed run has its energy", function()

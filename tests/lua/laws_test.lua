@@ -50,7 +50,7 @@ test("a belt or a moved body takes along what a freewheel keeps from falling beh
     for _, belt in ipairs { 3, excitation.constant(3), function() return 3 end } do ends_at(3, 3, { belt = belt }) end
     ends_at(-0.6, -0.7, { belt = -1, velocity0 = -0.5 })
     ends_at(-1, -1, { belt = -1, velocity0 = -1.5 })
-    raises(function() block:simulate { velocity0 = -0.5, t_end = 1 } end, "the freewheel turns forward only, but begins with -0.5")
+    refused { { "block:simulate { velocity0 = -0.5, t_end = 1 }", "the freewheel turns forward only, but begins with -0.5" } }
     for _, v in ipairs { 2, -2 } do
         local rig = system { bodies = { motor = { velocity = function() return v end }, load = { I = 1 } },
             links = { clutch = { "load", "motor", friction = friction.freewheel { Rd = 0.3 } } } }
@@ -65,7 +65,7 @@ test("an impact that would turn a freewheel backward stops it", function()
     local rig = system { bodies = { a = { I = 2 }, b = { I = 1 }, c = { I = 1 } },
         links = { one_way = { "a", "b", friction = wheel(0) }, play = { "c", "b", walls = { upper = 0.1, restitution = 0 } } } }
     expect(rig, { velocity0 = { c = 1 }, t_end = 1 }, { ["a.velocity"] = 0.25, ["b.velocity"] = 0.25, ["c.velocity"] = 0.25 })
-    raises(function() rig:simulate { velocity0 = { b = 1 }, t_end = 1 } end, "the freewheel one_way turns forward only, but begins with -1")
+    refused { { "rig:simulate { velocity0 = { b = 1 }, t_end = 1 }", "the freewheel one_way turns forward only, but begins with -1" } }
 end)
 
 -- A Jenkins element by hand: a state that clips at q.
@@ -121,7 +121,7 @@ test("parallel laws add their torques", function()
     equal(tostring(load("return " .. text)()), text)
     raises(function() run { 1 } end, "friction[1] must be a law")
     raises(function() run { friction.stribeck { Rd = 1, Re = 2, speed = 1 }, friction.stribeck { Rd = 1, Re = 2, speed = 1 } } end, "one law that depends on the speed")
-    raises(function() system { I = 1, k = 1, friction = friction.jenkins { stiffness = 9, Rd = 1 }, normal = math.sin } end, "must be a number")
+    refused { { "system { I = 1, k = 1, friction = friction.jenkins { stiffness = 9, Rd = 1 }, normal = math.sin }", "must be a number" } }
 end)
 
 test("sliders on a geared link stay at rest while another law holds it", function()
@@ -134,16 +134,18 @@ end)
 
 test("a law without an Rd lacks this field, and elastic stops are the walls", function()
     local held = system { I = 1, k = 1, friction = friction.freewheel { Rd = 0.1 } }
-    raises_here(function() return held.Rd end, "this system has no constant Rd: its friction is friction.freewheel{ Rd = 0.1 }")
-    raises_here(function() return held.dead_zone end, "no constant dead_zone: its friction is friction.freewheel")
+    refused {
+        { "held.Rd", "this system has no constant Rd: its friction is friction.freewheel{ Rd = 0.1 }" },
+        { "held.dead_zone", "no constant dead_zone: its friction is friction.freewheel" },
+    }
     local joint = system { I = 1, k = 1, friction = { friction.jenkins { stiffness = 2, Rd = 1 }, friction.coulomb { Rd = 1 } } }
-    raises_here(function() return joint.Re end, "this system has no constant Re: its friction is a list of laws")
+    refused { { "joint.Re", "this system has no constant Re: its friction is a list of laws" } }
     equal(joint.omega0, 1.0)
     equal(joint.walls, nil)
     local stopped = system { I = 1, k = 1, Rd = 0.1, walls = { upper = 0.5, stiffness = 100 } }
     equal(stopped.walls.stiffness, 100.0)
     equal(stopped.Rd, 0.1)
-    raises_here(function() return stopped.dead_zone end, "with elastic walls a mass has no dead zone")
+    refused { { "stopped.dead_zone", "with elastic walls a mass has no dead zone" } }
 end)
 
 test("the energy adds up with sliders on a belt, and with an impact that reverses a slider", function()

@@ -16,7 +16,7 @@ test("states are columns of the run, of its file, of run:at, and of plots", func
     equal(#run.states.e, #run)
     equal(run.states.e[1], 0.0)
     equal(run.e, run.states.e)
-    raises_here(function() return run.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
+    refused { { "run.states.E", "run.states has no 'E', only e; did you mean 'e'?" } }
     equal(table.concat(run.names, " "), "t theta velocity M friction damping e")
     local theta, velocity, z = run:at(run.t[7])
     near(z.e, run.e[7], 1e-13)
@@ -25,7 +25,7 @@ test("states are columns of the run, of its file, of run:at, and of plots", func
     local again = reloaded(run)
     equal(again.e[7], run.e[7])
     equal(again.states.e, run.states.e)
-    raises_here(function() return again.states.E end, "run.states has no 'E', only e; did you mean 'e'?")
+    refused { { "again.states.E", "run.states has no 'E', only e; did you mean 'e'?" } }
     assert(run:plot { y = "e", show = false })
     says(run, "feedback")
     assert(run:energy().total.closure < 1e-11)
@@ -134,14 +134,16 @@ test("each mistake is one sentence with the name of the option", function()
         { { integrator = integrator.dinal1989 { h = 0.1 }, belt = 1 }, "integrator.dinal1989" },
         { { M = excitation.relay { on = 1, off = 2, amplitude = { 1, 2 }, of = "heat" } }, "M: the relay looks at 'heat'; in this run it may look at theta, velocity" },
     })
-    raises_here(function() excitation.sampled(3, { every = 1 }) end, "excitation.sampled takes a function of t, theta, velocity, z, got 3")
+    refused { { "excitation.sampled(3, { every = 1 })", "excitation.sampled takes a function of t, theta, velocity, z, got 3" } }
     refuses(excitation.relay, {
         { { on = 1, off = 1, amplitude = { 1, 2 } }, "on = 1 and off = 1 must differ" },
         { { on = 1, off = 2, amplitude = { 1 } }, "amplitude must be a number, or two: { on, off }, got 1" },
     })
     local sampled = excitation.sampled(math.sin, { every = 1 })
-    raises_here(function() return sampled(1) end, "a controller with a memory has values in a run only")
-    raises_here(function() return sampled:delay(1) end, "cannot be delayed")
+    refused {
+        { "sampled(1)", "a controller with a memory has values in a run only" },
+        { "sampled:delay(1)", "cannot be delayed" },
+    }
 end)
 
 test("an error in the function of a belt or a base arrives unchanged, with the rows until then", function()

@@ -32,8 +32,10 @@ test("the steady motion of a chain without friction under a sine has its closed 
     local product = 1
     for _, m in ipairs(s.multipliers) do product = product * m.abs end
     near(product, math.exp(-0.1 * s.period), 1e-8)
-    raises_here(function() return s.amplitude end, "choose one of them, such as s.a.amplitude")
-    raises_here(function() return s.c end, "this steady motion has no 'c'; its bodies and links are a, b, rod")
+    refused {
+        { "s.amplitude", "choose one of them, such as s.a.amplitude" },
+        { "s.c", "this steady motion has no 'c'; its bodies and links are a, b, rod" },
+    }
 end)
 
 test("the steady motion of a chain with friction is that of a long run, with all its sticks", function()

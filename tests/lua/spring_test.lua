@@ -43,7 +43,7 @@ test("a spring that fails is reported with the angle and its line, and the rows 
 end)
 
 test("each mistake in a spring is one sentence with the name of the option", function()
-    raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
+    refused { { "spring.polynomial(3)", "spring.polynomial takes a table of powers of theta, got 3" } }
     refuses(spring.polynomial, {
         { { [0.5] = 1 }, "the power 0.5 must be a whole number from 1 to 31" },
         { { [32] = 1 }, "the power 32 must be" },
@@ -52,7 +52,7 @@ test("each mistake in a spring is one sentence with the name of the option", fun
         { { [3] = "a" }, "[3] must be a finite number, got the string" },
         { { [3] = 1 / 0 }, "[3] must be a finite number, got inf" },
     })
-    raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
+    refused { { "duffing.c = 2", "a spring cannot be changed" } }
 end)
 
 test("a motion that a softening spring releases ends with a message about the motion, not about M", function()

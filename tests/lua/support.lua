@@ -268,6 +268,45 @@ function support.refuses(call, rows)
     end
 end
 
+-- What a user sees at the level of the stack above: locals, those of the callers too, and globals.
+local function in_sight(level)
+    local names = {}
+    while debug.getinfo(level, "f") do
+        local own, i = {}, 1
+        while debug.getlocal(level, i) do
+            local name, value = debug.getlocal(level, i)
+            own[name], i = value, i + 1
+        end
+        for name, value in pairs(own) do
+            if names[name] == nil then names[name] = value end
+        end
+        local f
+        f, i = debug.getinfo(level, "f").func, 1
+        while debug.getupvalue(f, i) do
+            local name, value = debug.getupvalue(f, i)
+            if names[name] == nil then names[name] = value end
+            i = i + 1
+        end
+        level = level + 1
+    end
+    return setmetatable(names, { __index = _G })
+end
+
+--- Each input, which a user types where this is called, is refused: the message begins with its line and has the pieces
+-- behind the input in it.
+function support.refused(rows)
+    local sight, wrong = in_sight(3), {}
+    for _, row in ipairs(rows) do
+        local input = row[1]
+        local typed = load("return (" .. input .. ")", "=input", "t", sight) or assert(load(input, "=input", "t", sight))
+        local ok, message = pcall(typed)
+        local good = not ok and type(message) == "string" and message:find("input:1: ", 1, true) == 1
+        for _, piece in ipairs { table.unpack(row, 2) } do good = good and message:find(piece, 1, true) end
+        if not good then wrong[#wrong + 1] = ("%s\n    %s"):format(input, ok and "is not refused" or tostring(message)) end
+    end
+    if #wrong > 0 then error("refused otherwise than wanted:\n  " .. table.concat(wrong, "\n  "), 2) end
+end
+
 --- The events of that kind, as data.
 function support.of_kind(run, kind)
     return run.events:filter(function(event) return event.kind == kind end)

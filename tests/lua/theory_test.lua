@@ -108,10 +108,11 @@ test("wrong values are refused with the option, the element and the limit", func
     refuses(theory.logarithmic_decrement, {
         { { zeta = 1.2 }, "zeta = 1.2 must be from 0 to less than 1" },
     })
-    raises_here(function() theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = { 0.4, 0.2 } } end,
-        "breakaway_ratio[2] = 0.2 must be at least friction_ratio = 0.3")
-    raises_here(function() theory.den_hartog { r = 1e-5, friction_ratio = 0.3 } end, "r = 1e-05 must be 0 or from 0.0001 to 1e6")
-    raises_here(function() theory.identify { X0 = 0, X1 = 0, X2 = 0 } end, "X0 = 0 must not be zero")
+    refused {
+        { "theory.den_hartog { r = 0.5, friction_ratio = 0.3, breakaway_ratio = { 0.4, 0.2 } }", "breakaway_ratio[2] = 0.2 must be at least friction_ratio = 0.3" },
+        { "theory.den_hartog { r = 1e-5, friction_ratio = 0.3 }", "r = 1e-05 must be 0 or from 0.0001 to 1e6" },
+        { "theory.identify { X0 = 0, X1 = 0, X2 = 0 }", "X0 = 0 must not be zero" },
+    }
 end)
 
 -- ---- steady motion
