@@ -1,6 +1,6 @@
 """dinal.sweep on engines: the same bytes from each, after any death. Engines that are not installed are skipped.
 
-    python3 sweep_test.py SOURCE PROGRAM [--long], with PYTHONPATH set to the module's folder
+    python3 sweep_test.py SOURCE PROGRAM [--long] [[but] CLASS ...], with PYTHONPATH set to the module's folder
 """
 
 import concurrent.futures as cf
@@ -407,4 +407,7 @@ class Lock(unittest.TestCase):
 if __name__ == "__main__":
     import warnings
     warnings.simplefilter("ignore", DeprecationWarning)  # of tornado, within Dask
-    unittest.main(argv=sys.argv[:1] + [word for word in sys.argv[3:] if word != "--long"])
+    words = [word for word in sys.argv[3:] if word != "--long"]
+    if words[:1] == ["but"]:
+        words = [name for name, kind in globals().items() if isinstance(kind, type) and name not in words]
+    unittest.main(argv=sys.argv[:1] + words)
