@@ -36,6 +36,17 @@ test("without a motion, or with an unbounded one, the answer says so", function(
     says(nondimensional{ friction_ratio = 0.1 }:steady{ M = harmonic(0.5) }, "one of a family")
 end)
 
+test("friction that brakes one way longer than the other moves the mean, which is that of the rows of a period", function()
+    for _, Rd in ipairs { 0.05, 0.45, 0.9 } do
+        local s = system { I = 1, k = 1.3, C = 0.1, Rd = Rd }:steady { M = excitation.harmonic { omega = 1.3 }
+            + excitation.harmonic { omega = 2.6, amplitude = 0.6, phase = 0.4 }, omega = 1.3 }
+        local sum, theta = 0, s.run.theta
+        for i = 2, #theta do sum = sum + theta[i] end
+        local mean = sum / (#theta - 1)
+        assert(math.abs(mean) > 5e-4 * s.amplitude and math.abs(s.mean / mean - 1) < 1e-3, ("Rd = %g: %g for %g"):format(Rd, s.mean, mean))
+    end
+end)
+
 test("the mean of a motion with impulses includes them", function()
     local I, k, factor = 5, 7, 0.7
     local s = system { I = I, k = k, C = 0.2 }:steady { M = excitation.harmonic { omega = 0.9 }, events = {
