@@ -105,7 +105,7 @@ test("bodies without springs are drawn as discs, in metres or with springs side 
 end)
 
 test("an animation that is impossible is an error", function()
-    raises_here(function() run:animate() end, "a terminal does not show animations", 'give file = "run.svg"')
+    refused { { "run:animate()", "a terminal does not show animations", 'give file = "run.svg"' } }
     refuses(function(o) run:animate(o) end, {
         { { file = "run.mp4" }, "'run.mp4' must end in .svg" },
         { { file = "x.svg", speed = 0 }, "speed", "positive" },

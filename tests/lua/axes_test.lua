@@ -12,9 +12,10 @@ test("columns of different quantities have separate axes, one below the other", 
     assert(first < second and second < third)
     has(picture(run, { y = { "theta", "velocity" }, ylabel = "both" }), "both", "a theta", "b theta'")
     has(picture(run, { y = { "theta", "M/k" }, labels = { "angle", "load" } }), "a angle", "b load")
-    raises_here(function() run:plot{ y = { "theta", "velocity" }, ylim = { 0, 1 }, show = false } end, "ylim is for one unit",
-        "give ylabel")
-    raises_here(function() run:plot{ labels = 3, show = false } end, "labels must be a list of words")
+    refused {
+        { 'run:plot{ y = { "theta", "velocity" }, ylim = { 0, 1 }, show = false }', "ylim is for one unit", "give ylabel" },
+        { "run:plot{ labels = 3, show = false }", "labels must be a list of words" },
+    }
 end)
 
 test("a spectrum is drawn over decades, and a response near a pole with limits that show most of it", function()

@@ -13,45 +13,31 @@ local function clutch(options)
 end
 
 test("a clutch locks up at the right time and speed, and holds the right torque", function()
-    local run = clutch { Rd = 2 }:simulate { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }
-    local stick = first(run, "stick", "clutch")
-    near(stick.t, 3 / (2 / 1 + 2 / 3), 1e-13)
-    near(run.motor.velocity[9], 0.75, 1e-14)
+    local run = expect(clutch { Rd = 2 }, { velocity0 = { motor = 3 }, t_end = 4, dt = 0.5 }, { stick = { 3 / (2 / 1 + 2 / 3) }, ["motor.velocity"] = 0.75,
+        ["clutch.velocity"] = 0, ["clutch.torque"] = function(t) return t < 1 and -2 or t > 1.2 and 0 end })
     equal(run.motor.velocity[9], run.load.velocity[9])
-    equal(run.clutch.velocity[9], 0.0)
-    near(run.clutch.torque[1], -2, 0)
-    near(run.clutch.torque[9], 0, 1e-14)
+    equal(first(run, "stick").where, "clutch")
     -- under a torque on the load the locked clutch takes the motor along
-    run = clutch { Rd = 2 }:simulate { M = { load = 4 }, t_end = 1 }
-    near(run.motor:at(1), 0.5, 1e-14)
-    near(run.clutch.torque[500], 1, 1e-13)
+    expect(clutch { Rd = 2 }, { M = { load = 4 }, t_end = 1 }, { ["motor.theta"] = 0.5, ["clutch.torque"] = function() return 1 end })
 end)
 
 test("a capacity that falls releases as a load that rises does", function()
-    local fading = system { I = 1, k = 0, Rd = 0.1, Re = function(t) return 1 - t / 10 end }
-    local run = fading:simulate { M = 0.5, t_end = 8 }
-    near(first(run, "slip").t, 5, 1e-12)
-    near(run:at(8), 0.5 * 0.4 * 9, 1e-12)
-    equal(run.outcome, "reached the end")
-    local other = system { I = 1, k = 0, Rd = 0.1, Re = excitation.samples { t = { 0, 10 }, M = { 1, 0.2 } } }
-    near(first(other:simulate { M = 0.6, t_end = 8 }, "slip").t, 5, 1e-12)
+    for _, case in ipairs { { function(t) return 1 - t / 10 end, 0.5 }, { excitation.samples { t = { 0, 10 }, M = { 1, 0.2 } }, 0.6 } } do
+        local Re, M = table.unpack(case)
+        expect({ I = 1, k = 0, Rd = 0.1, Re = Re }, { M = M, t_end = 8 }, { status = "end", slip = { 5 }, theta = 0.5 * (M - 0.1) * 9 })
+    end
 end)
 
 test("friction may depend on angle, on a state, and on the speed", function()
     -- a wedge: while sliding down from theta0 > 0 friction c theta is a spring
-    local run = system { I = 1, k = 4, Rd = function(t, theta) return 3 * math.abs(theta) end,
-        Re = function(t, theta) return 3 * math.abs(theta) end }:simulate { theta0 = 1, t_end = 1.5, dt = 0.5 }
-    near(run.theta, run.t:cos(), 1e-12)
+    local function wedge(t, theta) return 3 * math.abs(theta) end
+    expect({ I = 1, k = 4, Rd = wedge, Re = wedge }, { theta0 = 1, t_end = 1.5, dt = 0.5 }, { theta = math.cos })
     -- a brake that gets hot: Rd falls with the heat, the heat is the work of friction
-    local hot = system { I = 1, k = 0, Rd = function(t, theta, velocity, z) return 1 / (1 + z.heat) end }
-        :simulate { velocity0 = 3, t_end = 3, dt = 1, states = { heat = {
-            rate = function(t, theta, velocity, z) return math.abs(velocity) / (1 + z.heat) end } } }
-    local theta, velocity, z = hot:at(3)
-    near(velocity ^ 2 / 2 + z.heat, 4.5, 1e-11)
-    local law = system { I = 1, k = 0, friction = function(speed) return 0.3 + 0.5 * speed end }
-        :simulate { velocity0 = 2, t_end = 5, dt = 1 }
+    local hot = expect({ I = 1, k = 0, Rd = function(t, theta, velocity, z) return 1 / (1 + z.heat) end }, { velocity0 = 3, t_end = 3, dt = 1,
+        states = { heat = { rate = function(t, theta, velocity, z) return math.abs(velocity) / (1 + z.heat) end } } })
+    for i, v in ipairs(hot.velocity) do near(v ^ 2 / 2 + hot.heat[i], 4.5, 1e-11) end
     -- v' = -0.3 - v/2 from 2: at rest at t = 2 ln((2 + 0.6)/0.6)
-    near(law.events[1].t, 2 * math.log(2.6 / 0.6), 1e-12)
+    expect({ I = 1, k = 0, friction = function(speed) return 0.3 + 0.5 * speed end }, { velocity0 = 2, t_end = 5, dt = 1 }, { stick = { 2 * math.log(2.6 / 0.6) } })
 end)
 
 test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl in presliding", function()
@@ -78,7 +64,7 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     equal(next(states), nil)
     local dahl = system { I = 1, k = 1 }:with { friction = friction.dahl { Rd = 1, stiffness = 10 } }
     equal(tostring(dahl), "system{ I = 1, k = 1, friction = friction.dahl{ Rd = 1, stiffness = 10 } }")
-    raises_here(function() friction.dahl { Rd = 0, stiffness = 10 } end, "Rd = 0 must be positive")
+    refused { { "friction.dahl { Rd = 0, stiffness = 10 }", "Rd = 0 must be positive" } }
 end)
 
 test("continuing one body continues the run of all bodies", function()
@@ -96,6 +82,12 @@ test("accelerations are those of the equation of motion, and 0 where a body is h
     equal(run.b.velocity[9], 0.0)
     equal(run.b.acceleration[9], 0.0)
     equal(run.link.acceleration, nil)
+    -- of a named body by rk4, also where the general engine has taken over from its steps
+    for _, M in ipairs { function(t, theta, v) return v.a > 0 and -0.5 or 0.5 end, function(t, theta, v) return math.sin(t) - v.a end } do
+        local a = system { bodies = { a = { I = 1, k = 4, C = 0.1, Rd = 0.3 } } }:simulate { M = { a = M }, theta0 = { a = 0.4 }, t_end = 3, dt = 0.5,
+            integrator = integrator.rk4 { h = 0.01 } }.a
+        near(a.acceleration, a.M - 4 * a.theta + a.friction + a.damping, 1e-14)
+    end
     -- of one body whose friction varies
     local one = system { I = 2, k = 3, Rd = function() return 0.3 end }:simulate { theta0 = 1, t_end = 1,
         states = { e = { rate = function() return 1 end } } }
@@ -107,28 +99,18 @@ test("a pulse between the nodes is found while all bodies are at rest, also with
     for _, states in ipairs { {}, { e = { rate = function() return 0 end } } } do
         local text = "pulse"
         local M = function(t) return math.abs(t - 2.069) < 0.1 and select("#", text, 1) or 0 end  -- not read: select
-        local run = system { bodies = { a = { I = 1, k = 1, Rd = 1 } } }:simulate { M = { a = M }, t_end = 10, states = states }
-        near(first(run, "slip", "a").t, 1.969, 1e-9)
+        expect({ bodies = { a = { I = 1, k = 1, Rd = 1 } } }, { M = { a = M }, t_end = 10, states = states }, { slip = { 1.969 }, within = 1e-9 })
     end
 end)
 
-test("a run continued from a mass that leans on a wall knows that it leans", function()
-    local rig = system { bodies = { a = { I = 1, k = 0, walls = { upper = 1, restitution = 0 } } } }
-    local options = { M = { a = function(t) return 2 - t end }, t_end = 1.8 }
-    local run = rig:simulate(options):continue { t_end = 4 }
-    options.t_end = 4
-    local whole = rig:simulate(options)
-    equal(table.concat(run.events.kind, " "), table.concat(whole.events.kind, " "))
-    near(first(run, "slip", "a").t, 2, 1e-12)
-end)
+-- In two parts it is cut at 1.7484, where it leans.
+moves("a run continued from a mass that leans on a wall knows that it leans", { bodies = { a = { I = 1, k = 0, walls = { upper = 1, restitution = 0 } } } },
+    { M = { a = function(t) return 2 - t end }, t_end = 4 }, { slip = { 2 } })
 
 test("an M with a delay is the same without the motion between the rows", function()
     local rig = pair({ I = 1, k = 4, C = 0.1 }, { I = 1, k = 1 }, { k = 1 })
-    local function last(dense)
-        local M = { a = excitation.delayed(function(t, theta, velocity) return 1 - 0.3 * velocity.b end, { by = 0.2 }) }
-        return rig:simulate { M = M, t_end = 10, dense = dense }.a.theta[1001]
-    end
-    equal(last(false), last(true))
+    local M = { a = excitation.delayed(function(t, theta, velocity) return 1 - 0.3 * velocity.b end, { by = 0.2 }) }
+    equal(rig:simulate { M = M, t_end = 10, dense = false }.a.theta, rig:simulate { M = M, t_end = 10 }.a.theta)
 end)
 
 test("mistakes are named with the body or link, and the nearest name", function()
@@ -170,14 +152,16 @@ test("mistakes are named with the body or link, and the nearest name", function(
         raises(function() rig:simulate(case[1]) end, table.unpack(case, 2))
     end
     local run, nothing = rig:simulate { t_end = 1 }, system { bodies = { a = { I = 1, Rd = 1, normal = function() return 0 / 0 end } } }
-    raises_here(function() return run.laod end, "this run has no 'laod'", "did you mean 'load'?")
-    raises_here(function() return run.theta end, "theta is of one body or link: run.load.theta")
-    raises_here(function() return run:cycle() end, "cycle is of one body or link: run.load:cycle")
-    raises_here(function() return run:spectrum() end, "theta is of one body or link: run.load.theta")
-    raises_here(function() return run:spectrum "load.thta" end, "there is no column 'thta'", "did you mean 'theta'?")
-    raises_here(function() return run:spectrum "thta" end, "there is no column 'thta'")
-    raises_here(function() plot { run, show = false } end, "theta is of one body or link: run.load.theta")
-    raises_here(function() identify { data = run } end, "a run of several bodies needs system = ..., or data = run.load alone")
+    refused {
+        { "run.laod", "this run has no 'laod'", "did you mean 'load'?" },
+        { "run.theta", "theta is of one body or link: run.load.theta" },
+        { "run:cycle()", "cycle is of one body or link: run.load:cycle" },
+        { "run:spectrum()", "theta is of one body or link: run.load.theta" },
+        { 'run:spectrum "load.thta"', "there is no column 'thta'", "did you mean 'theta'?" },
+        { 'run:spectrum "thta"', "there is no column 'thta'" },
+        { "plot { run, show = false }", "theta is of one body or link: run.load.theta" },
+        { "identify { data = run }", "a run of several bodies needs system = ..., or data = run.load alone" },
+    }
     refuses(system, { { { bodies = { events = { I = 1 } } }, "bodies: 'events' is a name that a run has already" } })
     raises(function() nothing:simulate { velocity0 = { a = 1 }, t_end = 1 } end, "normal returned")
 end)
@@ -229,26 +213,19 @@ test("units that are powers of two change no bit of several bodies", function()
 end)
 
 test("a contact between a body that a belt carries and one at rest slips, though both stick", function()
-    local rig = pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.2 })
-    local run = rig:simulate { belt = { a = 0.3 }, t_end = 5, dt = 1 }
-    near(first(run, "stick", "a").t, 0.3 / 0.8, 1e-13)
-    equal(#run.events, 1)
-    near(run.link.torque[3], -0.2, 1e-15)
-    near(run.a.friction[3], 0.2, 1e-15)
-    local e = run:energy()
-    near(e.link.dry, 0.2 * run.a.theta[6], 1e-12)
+    local run = expect(pair({ I = 1, Rd = 1 }, { I = 1, Rd = 1 }, { Rd = 0.2 }), { belt = { a = 0.3 }, t_end = 5, dt = 1 },
+        { events = 1, stick = { 0.3 / 0.8 }, ["link.torque"] = function() return -0.2 end, ["a.friction"] = function(t) return t > 0.5 and 0.2 end })
+    near(run:energy().link.dry, 0.2 * run.a.theta[6], 1e-12)
 end)
 
 test("a body that creeps does not change the motion or events of another one", function()
     local w, M = 2 * math.pi, excitation.harmonic { amplitude = 1, omega = 1.7 }
     local swings = { I = 1, k = 4, Rd = 0.1 }
-    local alone = system { bodies = { b = swings } }:simulate { M = { b = M }, t_end = 60, dt = 1 }
+    local alone = expect({ bodies = { b = swings } }, { M = { b = M }, t_end = 60, dt = 1 })
     local creeps = { I = 1, k = w * w, C = 4 * w, Rd = 0.3 * w * w, Re = 0.5 * w * w }
     for _, name in ipairs { "a", "z" } do
-        local run = system { bodies = { b = swings, [name] = creeps } }:simulate { M = { b = M }, theta0 = { [name] = 1.5 }, t_end = 60, dt = 1 }
-        equal(#run.b.events, #alone.b.events)
-        for i = 1, #alone.b.events do near(run.b.events[i].t, alone.b.events[i].t, 1e-12) end
-        near(run.b.theta, alone.b.theta, 1e-12)
+        local run = expect({ bodies = { b = swings, [name] = creeps } }, { M = { b = M }, theta0 = { [name] = 1.5 }, t_end = 60, dt = 1 }, { ["b.theta"] = alone.b.theta })
+        same_events(run.b, alone.b, 1e-12)
         equal(#run[name].events, 1)
     end
 end)
@@ -271,7 +248,7 @@ test("at(t) of a failed run states why it ended, for one body and for several", 
             pcall(sys.simulate, sys, { M = tostring(sys):find "bodies" and { a = M } or M, t_end = 5 })
             local run = dinal.partial
             equal(run.status, "failed")
-            raises_here(function() run:at(4) end, "t = 4 is outside the run from 0 to", "it ended there: M failed or became infinite")
+            refused { { "run:at(4)", "t = 4 is outside the run from 0 to", "it ended there: M failed or became infinite" } }
             assert(run:at(0))
         end
     end
@@ -289,9 +266,11 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(rig.shaft.omega0, 2.0)
     equal(rig.shaft.walls.upper, 1.0)
     equal(rig.motor.Rd, 1.0)
-    raises_here(function() return rig.motor.dead_zone end, "no constant dead_zone: its normal is a function")
-    raises_here(function() return rig.laod end, "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?")
-    raises_here(function() return rig.omega0 end, "omega0 is of one body or link: sys.load.omega0")
+    refused {
+        { "rig.motor.dead_zone", "no constant dead_zone: its normal is a function" },
+        { "rig.laod", "this system has no 'laod'; its bodies and links are load, motor, shaft; did you mean 'load'?" },
+        { "rig.omega0", "omega0 is of one body or link: sys.load.omega0" },
+    }
     local other = rig:with { bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 27 } } }
     equal(other.load.Rd, 0.5)
     equal(other.load.Re, 2.0)
@@ -300,12 +279,14 @@ test("each body and link is a system of its own, and with changes some of its nu
     equal(other.shaft.C, 0.5)
     equal(tostring(other:with { bodies = { load = { Rd = 1 } }, links = { shaft = { k = 3 } } }), tostring(rig))
     equal(rig:with { units = { t = "min" } }.units.t, "min")
-    raises_here(function() rig:with { bodies = { laod = { Rd = 1 } } } end, "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?")
-    raises_here(function() rig:with { links = { load = { Rd = 1 } } } end, "links: there is no link 'load'; there is shaft")
-    raises_here(function() rig:with { bodies = { load = { rd = 1 } } } end, "sys:with: bodies.load has no option 'rd'")
-    raises_here(function() rig:with { bodies = { load = 3 } } end, "bodies.load must be a table such as { k = 3 }, got 3")
-    raises_here(function() rig.with { links = {} } end, "use a colon: sys:with")
-    raises_here(function() rig:with { k = 1 } end, "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }")
+    refused {
+        { "rig:with { bodies = { laod = { Rd = 1 } } }", "bodies: there is no body 'laod'; there is load, motor; did you mean 'load'?" },
+        { "rig:with { links = { load = { Rd = 1 } } }", "links: there is no link 'load'; there is shaft" },
+        { "rig:with { bodies = { load = { rd = 1 } } }", "sys:with: bodies.load has no option 'rd'" },
+        { "rig:with { bodies = { load = 3 } }", "bodies.load must be a table such as { k = 3 }, got 3" },
+        { "rig.with { links = {} }", "use a colon: sys:with" },
+        { "rig:with { k = 1 }", "sys:with: k is an option of a body: bodies = { load = { I = 1, k = ... } }" },
+    }
 end)
 
 test("several bodies accept spectral and rk4, and exact says that it is for one body", function()
@@ -317,56 +298,43 @@ test("several bodies accept spectral and rk4, and exact says that it is for one 
     end
     local spectral, rk4 = run(), run(integrator.rk4 { h = 0.002 })
     equal(tostring(run(integrator.spectral {}).a.theta), tostring(spectral.a.theta))
-    equal(#rk4.events, #spectral.events)
-    for i, event in ipairs(spectral.events) do
-        equal(rk4.events[i].kind, event.kind)
-        equal(rk4.events[i].where, event.where)
-        near(rk4.events[i].t, event.t, 1e-7)
-    end
-    near(rk4.b.theta, spectral.b.theta, 1e-8)
+    alike(rk4, spectral, 1e-8)
     equal((rk4.b.theta - spectral.b.theta):abs():max() > 0, true)
     equal(tostring(rk4.integrator), "integrator.rk4{ h = 0.002 }")
     local long = run(integrator.rk4 { h = 0.002 }, 6):continue { t_end = 12 }
     equal(tostring(long.integrator), "integrator.rk4{ h = 0.002 }")
     near(long.b.theta, rk4.b.theta, 1e-8)
     equal(tostring(repeated(rk4).b.theta), tostring(rk4.b.theta))
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.exact {} } end, "integrator.exact is for one body with constant friction: use integrator.spectral or rk4")
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } } end, "h = 5")
+    refused {
+        { "rig:simulate { t_end = 12, integrator = integrator.exact {} }", "integrator.exact is for one body with constant friction: use integrator.spectral or rk4" },
+        { "rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 5 } }", "h = 5" },
+    }
     -- each body alone would be stable with this h, and their common mode is not
     local stiff = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", k = 1e6 } } }
-    raises_here(function() stiff:simulate { theta0 = { a = 1e-3 }, t_end = 1, integrator = integrator.rk4 { h = 0.0025 } } end,
-        "h = 0.0025 exceeds the stability limit 0.002 of rk4 (w0 = 1414.21, zeta = 0): use h <= 0.002")
+    refused { { "stiff:simulate { theta0 = { a = 1e-3 }, t_end = 1, integrator = integrator.rk4 { h = 0.0025 } }", "h = 0.0025 exceeds the stability limit 0.002 of rk4 (w0 = 1414.21, zeta = 0): use h <= 0.002" } }
     local damped = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { rod = { "a", "b", C = 1e4 } } }
-    raises_here(function() damped:simulate { velocity0 = { a = 1 }, t_end = 1, integrator = integrator.rk4 { h = 2e-4 } } end,
-        "exceeds the stability limit")
+    refused { { "damped:simulate { velocity0 = { a = 1 }, t_end = 1, integrator = integrator.rk4 { h = 2e-4 } }", "exceeds the stability limit" } }
     near(stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1, integrator = integrator.rk4 { h = 1e-5 } }.a.theta,
         stiff:simulate { theta0 = { a = 1e-3 }, t_end = 0.1 }.a.theta, 1e-9)
-    raises_here(function() rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } } end, "lost in the rounding of times")
+    refused { { "rig:simulate { t_end = 12, integrator = integrator.rk4 { h = 1e-300 } }", "lost in the rounding of times" } }
 end)
 
 test("each body and link has the states, and the events of the user with its own angle and velocity", function()
     local rig = system { bodies = { a = { I = 1, k = 4 }, b = { I = 1, Rd = 0.1 } }, links = { rod = { "a", "b", k = 2 } } }
-    local run = rig:simulate { theta0 = { a = 1 }, t_end = 3, dt = 0.5,
-        states = { z = { start = 1, rate = function(t, theta, velocity, z) return -z.z end } },
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 3, dt = 0.5, states = { z = { start = 1, rate = function(t, theta, velocity, z) return -z.z end } },
         events = { { when = function(t, theta) return theta.a - 0.5 end, name = "half" } } }
-    local users = {}
-    for _, e in ipairs(run.events) do
-        if e.kind == "user" then users[#users + 1] = e end
-    end
-    assert(#users > 0 and users[1].where == "")
+    local users = of_kind(run, "user")
+    assert(#users > 0 and users.where[1] == "")
     for _, part in ipairs { "a", "b", "rod" } do
-        local seen = 0
-        for _, e in ipairs(run[part].events) do
-            if e.kind == "user" then
-                seen = seen + 1
-                local theta, velocity, z = run[part]:at(e.t)
-                equal(e.name, "half")
-                near(e.theta, theta, 1e-12)
-                near(e.velocity, velocity, 1e-12)
-                near(z.z, math.exp(-e.t), 1e-10)
-            end
+        local own = of_kind(run[part], "user")
+        equal(#own, #users)
+        for _, e in ipairs(own) do
+            local theta, velocity, z = run[part]:at(e.t)
+            equal(e.name, "half")
+            near(e.theta, theta, 1e-12)
+            near(e.velocity, velocity, 1e-12)
+            near(z.z, math.exp(-e.t), 1e-10)
         end
-        equal(seen, #users)
         equal(run[part].states.z, run.states.z)
         equal(reloaded(run[part]).z, run.states.z)
     end
@@ -380,11 +348,13 @@ test("a body or link may be called like a field of one body, but not like a meth
     equal(rig.friction.Rd, 1.0)
     equal(#rig.links, 2)
     equal(#system { I = 1, k = 1 }.bodies, 0)
-    raises_here(function() system { bodies = { with = { I = 1 } } } end, "'with' is a name that a system has already")
-    raises_here(function() system { bodies = { links = { I = 1 } } } end, "'links' is a name that a system has already")
-    raises_here(function() return rig.damping end, "this system has no 'damping'; its bodies and links are")
-    raises_here(function() rig:characteristic_torque(1) end, "needs one body, and this system has names: take one of them, such as sys.a")
-    raises_here(function() theory.extremes { system = rig, theta0 = 1 } end, "theory.extremes: needs one body")
+    refused {
+        { "system { bodies = { with = { I = 1 } } }", "'with' is a name that a system has already" },
+        { "system { bodies = { links = { I = 1 } } }", "'links' is a name that a system has already" },
+        { "rig.damping", "this system has no 'damping'; its bodies and links are" },
+        { "rig:characteristic_torque(1)", "needs one body, and this system has names: take one of them, such as sys.a" },
+        { "theory.extremes { system = rig, theta0 = 1 }", "theory.extremes: needs one body" },
+    }
 end)
 
 test("a body that M cannot move again is at rest, also with a name, and with a state that nothing asks", function()

@@ -10,9 +10,11 @@ test("coroutine functions behave as in standard Lua", function()
     ok, message = pcall(wrapped)
     assert(not ok, message)
     has(message, "cannot resume dead coroutine")
-    raises(function() coroutine.resume(1) end, "bad argument #1 to 'resume'", "thread expected")
-    raises(function() coroutine.wrap(1) end, "bad argument #1 to 'wrap'")
-    raises(function() coroutine.close(coroutine.running()) end, "cannot close a running coroutine")
+    refused {
+        { "coroutine.resume(1)", "bad argument #1 to 'resume'", "thread expected" },
+        { "coroutine.wrap(1)", "bad argument #1 to 'wrap'" },
+        { "coroutine.close(coroutine.running())", "cannot close a running coroutine" },
+    }
     local co = coroutine.create(function() coroutine.yield() end)
     coroutine.resume(co)
     equal(coroutine.close(co), true)

@@ -32,8 +32,10 @@ test("rows are filtered by a function or a mask, and sorted by a column with nan
     equal(table.concat(d:filter(function(row) return row.r == row.r end).word), "cab")
     equal(table.concat(d:filter(d.r:map(function(x) return x > 1 end)).word), "cb")
     equal(#d:filter(function() return false end), 0)
-    raises(function() d:filter(function(row) error("mine") end) end, "mine")
-    raises_here(function() d:filter(vector{ 1 }) end, "the vector has 1 numbers, but there are 4 rows")
+    refused {
+        { 'd:filter(function(row) error("mine") end)', "mine" },
+        { "d:filter(vector{ 1 })", "the vector has 1 numbers, but there are 4 rows" },
+    }
 end)
 
 test("saved data read back to the last bit: gaps, infinities, words that look like numbers", function()
@@ -51,7 +53,7 @@ test("files of other programs may have decimal commas, empty fields and words; c
     local d = load("\xEF\xBB\xBF# made by a phone\r\nTime (s);Angle\r\n0,5;1,25\r\n1;2\r\n")
     equal(d["Time (s)"], vector{ 0.5, 1 })
     equal(d.Time, vector{ 0.5, 1 }) -- without the unit
-    raises(function() return load("x [m],x [s]\n1,2\n").x end, "there is no column 'x' among x [m], x [s]")
+    refused { { 'load("x [m],x [s]\\n1,2\\n").x', "there is no column 'x' among x [m], x [s]" } }
     equal(table.concat(load("t\tkind\n1\tturn\n2\t\n").kind, "|"), "turn|")
     equal(#load("only,names\n"), 0)
     equal(load("t,x\n1,3d\n2,1-2\n").x[2], "1-2")
@@ -62,7 +64,7 @@ test("files of other programs may have decimal commas, empty fields and words; c
         raises(function() load(text) end, message)
     end
     equal(load('t,w\n1,5" pipe\n2,"a ""b"""\n').w[1], '5" pipe')
-    raises(function() read("missing.csv") end, "load: ", "missing.csv")
+    refused { { 'read("missing.csv")', "load: ", "missing.csv" } }
 end)
 
 test("a line of units may have empty cells, also beside a column of words", function()
@@ -124,14 +126,16 @@ test("a raw log may have lines before it, names, units, disorder, duplicates and
     raises(function() log_of("a\nx\ny\n", { sort = true }) end, "load: sort needs a column of numbers")
     raises(function() log_of("t,x\n1,3\nMean,2\n", { sort = true }) end, "load: sort needs times, and the column 't' holds words, such as 'Mean'")
     raises(function() log_of("t,x\n1,3\n", { skip = 5 }) end, "nothing follows the lines that are skipped")
-    raises(function() identify { data = log_of('t,x\n"1",3\n"2",4\n') } end, "the column 't' of the record holds words, such as the number 1 in double quotes")
+    refused { { "identify { data = log_of('t,x\\n\"1\",3\\n\"2\",4\\n') }", "the column 't' of the record holds words, such as the number 1 in double quotes" } }
     equal(log_of('"t","theta"\n"0","1.5"\n"0.25","-2e-3"\n').theta, vector { 1.5, -2e-3 }) -- in a file with all fields in quotes
     equal(log_of('"t";"x"\n"0";"1,5"\n"0,25";"2"\n').x, vector { 1.5, 2 })
     local back = log_of("t,theta,velocity\n0,1,0\n2,2,1\n1,3,1\n3,4,0\n")
     has(tostring(back), "data: 4 rows; row 3 is earlier than the one before: sort = true puts them in order")
     equal(log_of("t,theta,velocity\n0,1,0\n2,2,1\n1,3,1\n3,4,0\n", { sort = true }):at(1), 3.0)
-    raises(function() identify { data = log_of("t,x\n1,3\n2,n/a\n") } end, "identify: the column 'x' of the record holds words, such as 'n/a'")
-    raises_here(function() read("x.dat", { skip = 1 }) end, "load: the record of 1989 (.dat) has no skip")
+    refused {
+        { 'identify { data = log_of("t,x\\n1,3\\n2,n/a\\n") }', "identify: the column 'x' of the record holds words, such as 'n/a'" },
+        { 'read("x.dat", { skip = 1 })', "load: the record of 1989 (.dat) has no skip" },
+    }
     raises(function() log_of(log, { skipp = 2 }) end, "load has no option 'skipp'", "did you mean 'skip'?")
     raises(function() log_of(log, { duplicates = "median" }) end, "duplicates must be 'keep', 'mean', 'first' or 'last', got the string \"median\"")
 end)
@@ -155,7 +159,7 @@ test("events have columns and rows, and can be saved and loaded", function()
     equal(events[1].kind, "turn")
     equal(of_kind(run, "turn").t[1], events[1].t)
     assert(tostring(events):find("^4 events: 3 turns, 1 rest\n"), tostring(events))
-    raises(function() return events.tetha end, "did you mean 'theta'?")
+    refused { { "events.tetha", "did you mean 'theta'?" } }
 end)
 
 test("data:plot draws columns", function()
@@ -167,8 +171,10 @@ test("data:plot draws columns", function()
         { { x = "rr" }, "there is no column 'rr'" },
         { { z = "A", style = "points" }, "style is for curves: leave it out, or z" },
     })
-    raises_here(function() data{ r = { 1 } }:plot() end, "no other column")
-    raises_here(function() data{ r = {}, A = {} }:plot() end, "no rows")
+    refused {
+        { "data{ r = { 1 } }:plot()", "no other column" },
+        { "data{ r = {}, A = {} }:plot()", "no rows" },
+    }
 end)
 
 test("a value that is not data is refused with a reason", function()
@@ -180,14 +186,16 @@ test("a value that is not data is refused with a reason", function()
         { { a = { 1, x = 2 } }, "data: a must be a list such as { 1, 2, 3 }, but it has x" },
         { { { "a", { 1 } }, a = { 2 } }, "two columns 'a'" },
     })
-    raises_here(function() data{ a = { 1 } }.a = 2 end, "be changed")
-    raises_here(function() return data{ a = { 1 } }[-1] end, "rows are counted from 1")
-    raises_here(function() data{ a = { 1 } }:select() end, "needs the name")
-    raises_here(function() data{ a = { 1 } }:save() end, "must be a string")
+    refused {
+        { "data{ a = { 1 } }.a = 2", "be changed" },
+        { "data{ a = { 1 } }[-1]", "rows are counted from 1" },
+        { "data{ a = { 1 } }:select()", "needs the name" },
+        { "data{ a = { 1 } }:save()", "must be a string" },
+    }
     for _, name in ipairs{ "x.lua", ".bashrc", "x" } do
         raises_here(function() data{ a = { 1 } }:save(name) end, "the name '" .. name .. "' must end in .csv")
     end
-    raises_here(function() data{ a = { 1 } }:save("/no/such/folder/x.csv") end, "/no/such/folder")
+    refused { { 'data{ a = { 1 } }:save("/no/such/folder/x.csv")', "/no/such/folder" } }
 end)
 
 test("a long or wide table is cut, and says so", function()

@@ -195,4 +195,98 @@ test("a mass that is at the limit of friction at the start, and pulled off at on
     near(dry, shaken:energy().total.dry, 1e-12)
 end)
 
+-- ---- one body, by the story of each motion
+
+local pi = math.pi
+local function sine(amplitude, frequency, phase) return excitation.harmonic { amplitude = amplitude, frequency = frequency, phase = phase } end
+local function of(zeta, gamma, Re) return nondimensional { zeta = zeta, friction_ratio = gamma, breakaway_ratio = Re } end
+local steady = { M = sine(1, 1), theta0 = 1, t_end = 20, dt = 0.01 }
+local unmoved = { M = sine(0.1, 12 / (2 * pi)), t_end = 50 }
+local function with(task, more) return merged(task, more) end
+
+-- What is simulated, what the story must say, and what it must not.
+local stories = {
+    ["a free decay has half cycles, the law of the extremes, and the reason for the rest"] = { of(0, 0.167), { velocity0 = 2 * pi, t_end = 5 },
+        { "There is no M: the motion is free.", "It made 4 half cycles with 3 turns and 1 stop",
+            "theta = 0.84685 (t = 0.22366), -0.51285 (t = 0.72366), 0.17885 (t = 1.2237).", "2 Rd/k = 0.334",
+            "It stopped at t = 1.7237 at theta = 0.15515 because |M - k theta| = 0.15515 <= Re = 0.167. M is constant from then on, so it stays at rest." },
+        { "At the end" }, both = true },
+    ["viscous decay"] = { of(0.119), { theta0 = 1, t_end = 5 }, { "Each extreme is 0.68624 =" } },
+    ["decay by both frictions"] = { of(0.119, 0.06), { theta0 = 1, t_end = 5 }, { "q = exp(-pi zeta/sqrt(1 - zeta^2)) = 0.68624 and Rd/k = 0.06" } },
+    ["no decay"] = { of(), { theta0 = 1, t_end = 5 }, { "Without damping and friction", "repeats itself every 1 (1 T0)" } },
+    ["a throw that creeps back"] = { of(2.387), { velocity0 = 6, t_end = 5 }, { "then creeps" } },
+    ["creep"] = { of(2.387), { theta0 = 1, t_end = 5 }, { "moved in one direction" } },
+    ["nothing"] = { of(), { t_end = 5 }, { "It stayed there" } },
+    -- From t = n/2 + 0.45017942 to (n + 1)/2 + 0.12493764 it is stuck: 0.34951644 of the time.
+    ["a steady motion has its period, amplitude, lag, stops and the time stuck"] = { of(0, 0.836), steady,
+        { "the motion is steady: it repeats itself every 1 (the period of M).", "The amplitude is 0.12917 about theta = 0.",
+            "It stops twice in each period and is stuck for 35 % of the time.",
+            "It stopped at t = 19.4502 at theta = 0.12917 because |M - k theta| = 0.17877 <= Re = 0.836; it stuck for 0.17476, until this torque exceeded Re and it slipped backward.",
+            "... 35 more ...", "was still stuck when the run ended at t = 20", "lags behind that of M by 2.002 rad" }, both = true },
+    -- A function tells no period; the motion does.
+    ["Den Hartog's motion"] = { of(0, 0.5), { M = function(t) return ({ math.sin(2.7 * pi * t) })[1] end, theta0 = 1, t_end = 100, dt = 0.005 },
+        { "every 0.74074 (0.74074 T0)", "lags behind that of M by 2.455 rad", "It does not stop." } },
+    ["linear growth, pi - 4 gamma a period"] = { of(0, 0.167), with(steady, { t_end = 10 }), { "The motion grows: amplitudes of", "periods of M, 2.4736 more each time." } },
+    ["growth by feedback"] = { of(), { M = function(_, _, v) return 0.1 * v end, theta0 = 1, t_end = 10 }, { "M is a feedback", "The motion grows", "times as much each time" } },
+    -- Beats of a lightly damped system last 1/(2 pi zeta) = 160 periods.
+    ["beats"] = { of(0.001), { M = sine(1, 0.93), t_end = 40.7 }, {}, { "is steady" } },
+    ["too short"] = { of(0.119, 0.418), with(steady, { t_end = 2 }), { "too short to tell" } },
+    ["settling"] = { of(0.119, 0.418), with(steady, { t_end = 7 }), { "is settling" } },
+    ["on the way to nothing"] = { of(0.001), { theta0 = 1, t_end = 50 }, {}, { "is settling" } },
+    ["stick-slip under a ramp"] = { system { I = 10, k = 4000, Rd = 19.62, Re = 29.43 }, { M = excitation.ramp { slope = 40 }, t_end = 10 },
+        { "The mass started at t = 0 from theta = 0 with velocity 0 and stuck there because |M - k theta| = 0 <= Re = 29.43, until t = 0.73575, when this torque exceeded Re and it slipped forward.",
+            "It advances by 0.0066769 in each period: stick-slip.", "It stops once in each period" } },
+    ["a slip at a jump of M"] = { of(0, 0.167), { M = excitation.pulse { amplitude = 2.95, at = 20, width = 0.125 }, t_end = 40 },
+        { "M is constant from t = 20.125 on.", "until t = 20, when M jumped so that |M - k theta| = 2.95 > Re = 0.167, and it slipped forward.", "stays at rest" } },
+    ["never moved"] = { of(0, 0.5), with(unmoved, { theta0 = 0.1 }),
+        { "Nothing moved it until the end of the run, t = 50.", "|M| never exceeds 0.1, which is too little to move it: it stays at rest." } },
+    -- 0.3 (cos 2x - cos x) is between -0.34 and 0.6: at 0.4 no harm comes of it, though 0.6 the other way were too much.
+    ["not moved in a period"] = { of(0, 0.8), { M = sine(-0.3, 6 / pi, pi / 2) + sine(0.3, 12 / pi, pi / 2), theta0 = 0.4, t_end = 50 },
+        { "A whole period of M did not move it, so it stays at rest." } },
+    ["not moved any more"] = { of(0, 0.5), with(unmoved, { theta0 = 3 }), { "was still stuck when the run ended at t = 50. |M| never exceeds 0.1" }, { "steady" } },
+    ["a limit cycle"] = { of(0, 0.05), { M = function(_, theta, v) return 0.1 * (1 - theta ^ 2) * v end, theta0 = 0.5, t_end = 60 }, { "This is a limit cycle" } },
+    ["chatter"] = { of(0, 0.1), { M = unread(function(_, _, v) return v == 0 and 0.5 or -5 end), t_end = 5 }, { "The run stopped early", "no jump was located" } },
+    ["far from t = 0 a load that grows"] = { of(0.05, 0.3), with(steady, { t_start = 1e9, t_end = 1e9 + 2 }), { "exceeded Re" }, { "jumped" } },
+    ["viscous damping and breakaway"] = { of(0.05, 0, 0.3), { theta0 = 1, t_end = 40 }, { "until friction holds the" }, { "never quite ends" } },
+    ["no dense output and no rows"] = { of(0, 0.836), with(steady, { t_end = 1000.2, dt = 1000.2, dense = false }),
+        { "The amplitude is 0.12917 about theta = 0. It stops twice", "It stopped at t = 999.4502 at" } },
+    ["a wall"] = { system { I = 1, k = 0, walls = { lower = 0, restitution = 0.5 } }, { M = excitation.ramp { slope = 1, at = 8 } - 2, theta0 = 1, t_end = 12, dt = 0.5 },
+        { "There is a wall at theta = 0; an impact keeps 50 % of the speed.", "It hit the wall", "first at t = 1;",
+            "the hardest impact had velocity -2, at t = 1.", "It came to rest at the wall, theta = 0, at t = 3;", "pulled it off the wall forward" } },
+    ["a second spring"] = { system { I = 1, k = 0.7, Rd = 0.05, Re = 0.08, spring = spring.polynomial { [3] = 0.4 } }, { theta0 = 1.7, t_end = 200, dt = 1 },
+        { "a second spring besides k theta", "|M - k theta - spring| =" }, { "2 Rd/k" } },
+    ["a spring alone"] = { system { I = 1, k = 0, Rd = 0.05, Re = 0.08, spring = spring.polynomial { [3] = 0.4 } }, { theta0 = 1.7, t_end = 200, dt = 1 },
+        { "a block on a nonlinear spring", "|M - spring| =" } },
+}
+for name, u in pairs { ["tiny"] = { 1e-6, 1e3, 1e-6 }, ["huge"] = { 1e5, 1, 1e6 } } do -- I, k and the torque of M
+    local I, k, M0 = table.unpack(u)
+    local omega = math.sqrt(k / I)
+    stories[name .. " units"] = { system { I = I, k = k, Rd = 0.836 * M0 }, { M = excitation.harmonic { amplitude = M0, omega = omega }, theta0 = M0 / k, t_end = 40 * pi / omega },
+        { "the period of M", "twice in each period and is stuck for 35 %" } }
+end
+
+test("the story of each motion says what happened and why, in at most 25 lines of 80 characters", function()
+    for name, case in pairs(stories) do
+        for _, by in ipairs { integrator.spectral {}, case.both and integrator.rk4 { h = 0.001 } or nil } do
+            local task = merged(case[2], { integrator = by, dt = case[2].dt or 0.01 })
+            local run = case[1]:simulate(task)
+            local ok, problem = pcall(says, run, table.unpack(case[3]))
+            if ok and case[4] then ok, problem = pcall(has_not, told(run), table.unpack(case[4])) end
+            if not ok then error(("%s, %s: %s"):format(name, tostring(by), problem)) end
+            local lines = 0
+            for line in run:explain():gmatch "[^\n]+" do
+                lines = lines + 1
+                assert(utf8.len(line) < 80, line)
+            end
+            assert(lines <= 25, name)
+        end
+    end
+end)
+
+test("the story of a run that failed before anything moved the mass says that it was stuck", function()
+    pcall(function() of(0, 0.3):simulate { M = function(t) return t > 2 and 0 / 0 or 1 end, theta0 = 1, t_end = 10, dt = 0.01 } end)
+    says(dinal.partial, "stuck there because |M - k theta| = 0 <= Re = 0.3.", "The run stopped early, at t = 2: M failed")
+    has_not(told(dinal.partial), "moved off", "in balance")
+end)
+
 finish()

@@ -4,12 +4,6 @@ dofile "tests/lua/support.lua"
 -- A jump that nobody announced is found to 1e-13 of a run of some time units.
 local found = 1e-11
 
-local function kinds(run)
-    local list = {}
-    for _, e in ipairs(run.events) do list[#list + 1] = e.kind end
-    return table.concat(list, " ")
-end
-
 test("a belt with kinks where it is zero is followed quickly", function()
     local asked = 0
     local run = system { I = 1, k = 0, Rd = 0.1 }:simulate {
@@ -23,19 +17,14 @@ test("a belt with kinks where it is zero is followed quickly", function()
     near(run.theta[#run], 2 * 7 - 0.05 * 49, found)
 end)
 
-test("without dry friction a belt has no effect, and the start is not reported as a turn", function()
-    local run = system { I = 1, k = 1 }:simulate { belt = 0.5, theta0 = -0.5, t_end = 4, dt = 1 }
-    equal(kinds(run), "turn")
-    near(run.events[1].t, math.pi, 1e-14)
-end)
+moves("without dry friction a belt has no effect, and the start is not reported as a turn", { I = 1, k = 1 }, { belt = 0.5, theta0 = -0.5, t_end = 4, dt = 1 },
+    { events = 1, turn = { math.pi } })
 
 test("a belt that begins to move along a wall takes a mass off it, by sliding or by sticking", function()
-    local sys = system { I = 2, k = 0, Rd = 0.5, Re = 0.75, walls = { lower = 0, upper = 1, restitution = 0.5 } }
+    local own = { I = 2, k = 0, Rd = 0.5, Re = 0.75, walls = { lower = 0, upper = 1, restitution = 0.5 } }
     for rate, theta in pairs { [1] = 0.125, [0.1] = 0.05 } do -- slower than the belt, or as it goes
         for _, belt in ipairs { function(t) return rate * t end, excitation.ramp { slope = rate } } do
-            local run = sys:simulate { belt = belt, t_end = 1, dt = 1 }
-            equal(#run.events, 0)
-            near(run.theta[#run], theta, 1e-12)
+            expect(own, { belt = belt, t_end = 1, dt = 1 }, { events = 0, theta = theta }, rate)
         end
     end
 end)
@@ -49,7 +38,7 @@ test("a belt that begins to move from rest carries the mass until spring, inerti
         local start, belt = table.unpack(case)
         for _, M in ipairs { 0, -0.25 } do
             for _, walls in ipairs { {}, { lower = 0 } } do
-                local run = system { I = I, k = k, Rd = Rd, Re = Re, walls = walls }:simulate { M = M, belt = belt, t_end = 2, dt = 2 }
+                local run = expect({ I = I, k = k, Rd = Rd, Re = Re, walls = walls }, { M = M, belt = belt, t_end = 2, dt = 2 })
                 local slip = run.events[#run.events] -- the only one, or behind that which takes it from the wall
                 equal(slip.kind, "slip")
                 -- I rate + k rate s^2/2 - M = Re, a time s after the belt set off
@@ -73,25 +62,14 @@ test("an event at the time of a row is included in the row, and in the motion at
     end
 end)
 
-test("an impact that moves a user's value past zero causes an event there, and so does its return", function()
-    local run = system { I = 1, k = 0, walls = { upper = 1, restitution = 0.5 } }:simulate {
-        velocity0 = 1, M = 0.5, t_end = 3, dt = 1, -- at the wall at 2 (sqrt 2 - 1), with sqrt 2
-        events = { { when = function(_, _, v) return v - 0.1 end, name = "slow" } },
-    }
-    local hit = 2 * (math.sqrt(2) - 1)
-    equal(run.events[1].kind .. " " .. run.events[2].kind .. " " .. run.events[3].kind, "impact user turn")
-    near(run.events[2].t, hit, 1e-14)
-    equal(run.events[4].kind, "user")
-    near(run.events[4].t, hit + 2 * (math.sqrt(0.5) + 0.1), 1e-13)
-end)
+-- At the wall at 2 (sqrt 2 - 1), with sqrt 2.
+local hit = 2 * (math.sqrt(2) - 1)
+moves("an impact that moves a user's value past zero causes an event there, and so does its return", { I = 1, k = 0, walls = { upper = 1, restitution = 0.5 } },
+    { velocity0 = 1, M = 0.5, t_end = 2.5, dt = 1, events = { { when = function(_, _, v) return v - 0.1 end, name = "slow" } } },
+    { impact = { hit }, user = { hit, hit + 2 * (math.sqrt(0.5) + 0.1) }, turn = 1 })
 
-test("a run may end at a jump of a function, also at t = 0", function()
-    local run = system { I = 1, k = 0 }:simulate {
-        M = function(t) return t / 4 % 1 < 0.5 and 1 or -1 end, velocity0 = 2.5, t_start = -1, t_end = 0, dt = 0.5,
-    }
-    near(run.velocity[#run], 1.5, 1e-13)
-    near(run.theta[#run], 2, 1e-13)
-end)
+moves("a run may end at a jump of a function, also at t = 0", { I = 1, k = 0 }, { M = function(t) return t / 4 % 1 < 0.5 and 1 or -1 end, velocity0 = 2.5, t_start = -1, t_end = 0, dt = 0.5 },
+    { velocity = 1.5, theta = 2 })
 
 -- Evenly spaced levels, alternating or any, on a swing or not; the belt tells its jumps, or it does not.
 local function unannounced(size, period, phase, alternate)

@@ -3,10 +3,12 @@ dofile "tests/lua/support.lua"
 
 test("before a number is given, the lab gives and judges nothing", function()
   equal(lab.number(), nil)
-  raises_here(function() check("1a", 3) end, "check: first set your own student number, for example lab.number(4711)")
-  raises_here(function() lab.given(1) end, "lab.given: first set your own student number")
-  raises_here(function() lab.experiment(1) end, "lab.experiment: first set your own student number")
-  raises_here(function() lab.marks() end, "lab.marks: first set your own student number")
+  refused {
+      { 'check("1a", 3)', "check: first set your own student number, for example lab.number(4711)" },
+      { "lab.given(1)", "lab.given: first set your own student number" },
+      { "lab.experiment(1)", "lab.experiment: first set your own student number" },
+      { "lab.marks()", "lab.marks: first set your own student number" },
+  }
 end)
 
 test("a sweep judges no answers, as each of its workers would begin with all tries", function()
@@ -21,11 +23,13 @@ end)
 
 test("an invalid number is refused with one sentence", function()
   for _, wrong in ipairs { 0, -3, 1.5, 1e9, math.huge, 0/0 } do
-    raises_here(function() lab.number(wrong) end, "lab.number: a student number is a whole number from 1 to 999999999, got ")
+    refused { { "lab.number(wrong)", "lab.number: a student number is a whole number from 1 to 999999999, got " } }
   end
-  raises_here(function() lab.number("4711") end, 'got the string "4711"; write it without quotes')
-  raises_here(function() lab.number(nil) end, "got nil")
-  raises_here(function() lab.number({}) end, "got a table")
+  refused {
+      { 'lab.number("4711")', 'got the string "4711"; write it without quotes' },
+      { "lab.number(nil)", "got nil" },
+      { "lab.number({})", "got a table" },
+  }
   equal(lab.number(), nil)
   equal(lab.number(4711), 4711)
   equal(lab.number(4711.0), 4711)

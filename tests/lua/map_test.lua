@@ -39,7 +39,7 @@ test("points over two parameters are a map, or a curve for each value of the fir
     local one = family:filter(function(p) return p.a == 2 end)
     equal(tostring(one:plot{ show = false }), tostring(data{ b = one.b, v = one.v }:plot{ x = "b", y = "v", show = false }))
     local three = sweep{ over = { a = { 1, 2 }, b = { 1, 2 }, c = { 1, 2 } }, run = function(p) return { v = p.a } end }
-    raises_here(function() three:plot{ show = false } end, "points over a, b, c are not a map")
+    refused { { "three:plot{ show = false }", "points over a, b, c are not a map" } }
     has(three:filter(function(p) return p.a == 1 end):plot{ show = false }, "v:")
 end)
 
@@ -48,8 +48,7 @@ test("on logarithmic axes a map omits values that are not positive", function()
     local without = with:filter(function(p) return p.x > 0 and p.y > 0 end)
     local function text(d) return tostring(d:plot { z = "z", xlog = true, ylog = true, show = false }) end
     equal(text(with), text(without))
-    raises_here(function() data { x = { 0, 0 }, y = { 1, 2 }, z = { 1, 2 } }:plot { z = "z", xlog = true, show = false } end,
-        "0 different values of x")
+    refused { { 'data { x = { 0, 0 }, y = { 1, 2 }, z = { 1, 2 } }:plot { z = "z", xlog = true, show = false }', "0 different values of x" } }
 end)
 
 test("a map goes into files with a legend, and an SVG of a fine one stays small", function()
@@ -66,10 +65,12 @@ end)
 
 test("data that are not a grid are refused", function()
     local d = data { x = { 1, 2, 2 }, y = { 1, 1, 1 }, z = { 1, 2, 3 } }
-    raises_here(function() d:plot { x = "x", y = "y", z = "z" } end, "two rows with x = 2, y = 1")
+    refused { { 'd:plot { x = "x", y = "y", z = "z" }', "two rows with x = 2, y = 1" } }
     local v = vector.linspace(0, 1, 100)
-    raises_here(function() data { x = v, y = v, z = v }:plot { x = "x", y = "y", z = "z" } end, "x and y form no grid")
-    raises_here(function() d:plot { zlim = { 0, 1 } } end, "zlim is for maps")
+    refused {
+        { 'data { x = v, y = v, z = v }:plot { x = "x", y = "y", z = "z" }', "x and y form no grid" },
+        { "d:plot { zlim = { 0, 1 } }", "zlim is for maps" },
+    }
     refuses(function(o) map:plot(o) end, {
         { { z = "steep" }, "no column 'steep'" },
         { { z = "error" }, "holds words" },
@@ -122,7 +123,7 @@ test("the file of a bifurcation with other samples is refused", function()
     end }
     equal(tostring(bifurcation(options)), tostring(bifurcation(options)))
     for name, other in pairs { period = 2, skip = 2, keep = 3 } do
-        raises(function() bifurcation(merged(options, { [name] = other })) end, "is not the result of this sweep")
+        refused { { "bifurcation(merged(options, { [name] = other }))", "is not the result of this sweep" } }
     end
 end)
 
@@ -153,7 +154,7 @@ test("a bifurcation in a file has the same rows, and the same call reads them", 
     local again = diagram(2)
     equal(tostring(again), tostring(b))
     raises(function() diagram(3) end, "is not the result of this sweep")
-    raises_here(function() bifurcation { over = { a = { 1 } }, period = 1, file = "b.txt", at = print } end, "must end in .csv")
+    refused { { 'bifurcation { over = { a = { 1 } }, period = 1, file = "b.txt", at = print }', "must end in .csv" } }
 end)
 
 test("mistakes in a bifurcation are errors with a reason", function()

@@ -165,7 +165,7 @@ test("a run from a file is drawn, too", function()
     has(picture(csv), "theta, rad")
     has(picture(dat), "a theta", "b M/k")
     has(picture(dat, {}, "phase_plot"), "theta'/omega0, rad")
-    raises_here(function() csv:phase_plot() end, "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }")
+    refused { { "csv:phase_plot()", "needs omega0", "run:plot{ x = \"theta\", y = \"velocity\" }" } }
     local other = temporary ".csv"
     write(other, "time,acceleration\n0,1\n1,2.5\n")
     has(picture(load(other)), "acceleration", "time")
@@ -176,13 +176,15 @@ test("a run may be a curve among others: its theta over t", function()
     has(vectors { run, { other, label = "half" }, title = "two" }, "two", "theta, rad", "half")
     has(vectors { nondimensional {}:with { units = { theta = "m", t = "s" } }:simulate { theta0 = 1, t_end = 1, dt = 0.1 } }, "theta, m", "t, s")
     has(vectors { run, ylabel = "angle" }, "angle")
-    raises_here(function() plot { nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false } } end, "plot: curve 1: the run has no rows to draw")
-    raises_here(function() plot { (reloaded(run, { columns = { "theta", "velocity" } })) } end, "the run has no column 't'", "{ run.theta, run.velocity }")
+    refused {
+        { "plot { nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false } }", "plot: curve 1: the run has no rows to draw" },
+        { 'plot { (reloaded(run, { columns = { "theta", "velocity" } })) }', "the run has no column 't'", "{ run.theta, run.velocity }" },
+    }
 end)
 
 test("a run without rows and dense output says what to do", function()
     local none = nd:simulate { theta0 = 1, t_end = 1, times = {}, dense = false }
-    raises_here(function() none:plot() end, "run:plot: the run has no rows to draw", "dt")
+    refused { { "none:plot()", "run:plot: the run has no rows to draw", "dt" } }
 end)
 
 test("the window of an x that is not t is no window of t", function()
@@ -233,8 +235,10 @@ test("show = false returns a picture, which can be printed and combined with ano
     assert(both:match "^[^\n]*left[^\n]*right", both)
     local narrow = tostring(plot { left, right, width = 60, height = 20, show = false })
     assert(narrow:match "left.-\n.*right" and not narrow:match "^[^\n]*left[^\n]*right", narrow)
-    raises_here(function() plot { left, line } end, "curves and pictures cannot be combined")
-    raises_here(function() return left.titel end, "a picture has no field 'titel'")
+    refused {
+        { "plot { left, line }", "curves and pictures cannot be combined" },
+        { "left.titel", "a picture has no field 'titel'" },
+    }
 end)
 
 test("a picture outlives its run", function()
@@ -248,7 +252,7 @@ test("a picture outlives its run", function()
 end)
 
 test("errors in curves name the curve's number", function()
-    raises_here(function() plot(run.t, { run.theta, "a" }) end, "plot takes one table of curves")
+    refused { { 'plot(run.t, { run.theta, "a" })', "plot takes one table of curves" } }
     refuses(plot, {
         { {}, "plot needs a curve" },
         { { run.t, run.theta }, "item 1 must be a curve { x, y }, a run or a picture, got a vector" },
@@ -265,12 +269,14 @@ test("errors in curves name the curve's number", function()
     })
     local many = {}
     for i = 1, 1001 do many[i] = line end
-    raises_here(function() plot(many) end, "1001 curves are too many, 1000 can be drawn")
+    refused { { "plot(many)", "1001 curves are too many, 1000 can be drawn" } }
 end)
 
 test("errors in options name their limits", function()
-    raises_here(function() run:plot("x.svg") end, "named options")
-    raises_here(function() run.plot() end, "use a colon: run:plot()")
+    refused {
+        { 'run:plot("x.svg")', "named options" },
+        { "run.plot()", "use a colon: run:plot()" },
+    }
     refuses(function(o) run:plot(o) end, {
         { { xlim = { 1, 0 } }, "xlim must be two increasing numbers" },
         { { xlim = { 1, 1 + 1e-15 } }, "xlim", "1e-13" },
@@ -323,8 +329,10 @@ test("plot(x, y) is plot{ { x, y } }", function()
     local long = plot { { x, x ^ 2 }, width = 40, height = 8, title = "square", show = false }
     equal(tostring(plot(x, x ^ 2, options)), tostring(long))
     equal(tostring(plot(x:table(), (x ^ 2):table(), options)), tostring(long))
-    raises(function() plot(x, x, { colour = 1 }) end, "plot has no option 'colour'")
-    raises(function() plot(x, 3) end, "plot takes one table of curves")
+    refused {
+        { "plot(x, x, { colour = 1 })", "plot has no option 'colour'" },
+        { "plot(x, 3)", "plot takes one table of curves" },
+    }
     equal(options.show, false)
 end)
 

@@ -37,44 +37,11 @@ local function not_read(f, why)
     assert(found:match("reading_test.lua:(%d+): ") and tonumber(found:match(":(%d+):")) >= line, found)
 end
 
-local none, list, deep = nil, { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
-local function both(x) return x, -x end
-local function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end
+local list, deep = { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
 
-test("operations of formulas that the random ones below do not use are read", function()
-    local functions = {
-        function(t) local s = 0 for i = 5, 1, -1 do if t > i then s = s + 1 else s = s - 0.5 end end return s end,
-        function(t) for i = 3, 1 do t = t + i end return t end,
-        function(t) local i = 0 while i < 5 do i = i + 1 if t < i then break end end return i end,
-        function(t) local i = 0 repeat i = i + 1 until i > 3 return i + t end,
-        function(t) return math.floor(t) < 2 and math.floor(t) or math.floor(t) == 3 and 1 or 0.5 end,
-        function(t) return math.sqrt(t) + math.log(t) + math.log(t, 2) + math.log(t, 10) + math.log(t, 3) end,
-        function(t) return math.exp(-t) + math.tan(t) + math.asin(t) + math.acos(t) + math.atan(t) + math.atan(t, -2) end,
-        function(t) return math.fmod(t, 0.7) + math.fmod(-t, 3) + math.rad(t) + math.deg(t) + math.pi end,
-        function(t) return math.tointeger(3) * t + math.huge * 0 < 1 and t or -t end,
-        function(t) return math.huge > t and math.maxinteger + 1 or math.mininteger // -1 end,
-        function(t) local a, b = both(t) return a * 2 + b + (both(t)) + math.max(both(t)) end,
-        function(t) return triangle(9) * t end,
-        function(t) return none == nil and t or 2 end,
-        function(t) local x, y, z = t, 2 x, y = y, x return z == nil and x - y or x end,
-        function(t) assert(t < 1e400, "far") return t end,
-        function(t) if t < 0 then error("early") end return math.sqrt(t) end,
-        function(t) if t > 0 then return t end end,
-        function(t) local on = t < 1 and t > 0 if on == true then return 1 end return 0 end,
-    }
-    for i, f in ipairs(functions) do assert(same_values(f, "function " .. i) > 50) end
-end)
-
-test("zeros keep their signs, and whole numbers wrap", function()
-    local minus = -0.0
-    same_values(function(t) return minus * math.abs(t) end, "-0")
-    same_values(function(t) return -(t - t) end, "-(0)")
-    same_values(function(t) return t < 1 and -0.0 or 0.0 end, "both")
-    same_values(function(t) local n = math.maxinteger if t > 0 then n = n + 1 end return n end, "wrap")
-    same_values(function(t) return math.floor(t) * math.maxinteger end, "wrap later")
-    same_values(function(t) return math.floor(t) * 3 + 1 <= t * 3 and 1 or 2 end, "beyond 2^53")
-    same_values(function(t) return math.floor(t) % 7 - math.floor(t) % -7 end, "whole %")
-    same_values(function(t) return math.floor(t) // -1 + 10 // math.floor(t + 0.5) end, "whole //")
+test("whole numbers wrap", function()
+    same_values(function(t) local n = math.maxinteger if t > 0 then n = n + 1 end return n end, "at once")
+    same_values(function(t) return math.floor(t) * math.maxinteger + (math.mininteger // -1) end, "later")
 end)
 
 test("a function that is not a formula is not read, and the line is named", function()
@@ -178,8 +145,7 @@ test("sums of native terms, and pieces of them, are run by exact, and have known
     -- what else runs in Lua may change what M depends on
     local run = sys:simulate { M = cases[1][1], t_end = 1, dt = 1, events = { { when = function(t) return t - 0.5 end } } }
     equal(tostring(run.integrator), "integrator.spectral{}")
-    raises_here(function() sys:simulate { M = math.sin, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
-        "integrator.exact{} supports only native terms")
+    refused { { "sys:simulate { M = math.sin, t_end = 1, dt = 1, integrator = integrator.exact {} }", "integrator.exact{} supports only native terms" } }
 end)
 
 test("a formula may use theta, velocity and states, and a run is the same to the last bit", function()
@@ -488,14 +454,18 @@ local r = math.random
 
 -- L is a leaf, N a number, F a function of one argument, E an expression, C a condition and S a statement.
 local grammar = {
-    L = { "t", "a", "p.x", "p.q.n", "x", "N", "N" },
-    F = { "sin", "cos", "floor", "ceil", "abs", "sqrt", "atan", "exp", "tan" },
+    L = { "t", "t", "a", "p.x", "p.q.n", "x", "N", "N", "list[2]", "math.pi", "triangle(4)", "math.tointeger(3)", "math.huge * 0", "-0.0", "(t - t)" },
+    F = { "sin", "cos", "floor", "ceil", "abs", "sqrt", "atan", "exp", "tan", "log", "asin", "acos", "rad", "deg" },
     E = { "(E + E)", "(E - E)", "(E * E)", "(E / E)", "(E // E)", "(E % E)", "(E) ^ 2", "(E) ^ 3", "-(E)", "math.F(E)", "math.F(E)",
-        "math.F(E)", "math.max(E, E)", "math.min(E, E)", "math.max(E, E, E)", "(C and E or E)", "(C and E or E)", "helper(E, E)",
-        "list[2]", "math.fmod(E, 1.5 + E)" },
-    C = { "E < E", "E <= E", "E > E", "E >= E", "E == E", "E ~= E", "(C and C)", "(C or C)", "not (C)" },
+        "math.F(E)", "math.max(E, E)", "math.min(E, E)", "math.max(E, E, E)", "math.min(E, E, E, E)", "math.max(E, E, E, E)", "(C and E or E)", "(C and E or E)",
+        "helper(E, E)", "math.fmod(E, 1.5 + E)", "math.fmod(E, 3)", "math.log(E, 2)", "math.log(E, 10)", "math.log(E, 3)", "math.atan(E, E)", "(both(E))",
+        "math.max(both(E))", "(none == nil and E or 2)", "math.floor(t) // -1", "(math.floor(t) % 7 - math.floor(t) % -7)", "10 // math.floor(t + 0.5)", "(math.floor(t) * 3 + 1)" },
+    C = { "E < E", "E <= E", "E > E", "E >= E", "E == E", "E ~= E", "(C and C)", "(C or C)", "not (C)", "(C) == true", "math.floor(t) < 2" },
     S = { "if C then x = E else x = E end", "for i = -1, 3 do x = x * 0.5 + i * E if C then break end end", "if C then return E end",
-        "local y = x x = E + y" },
+        "local y = x x = E + y", "for i = 7, 1, -2 do if t > i then x = x + E else x = x - 0.5 end end", "for i = 3, 1 do x = E end",
+        "local i = 0 while i < 5 do i = i + 1 if t < i then break end x = x + i * E end", "local i = 0 repeat i = i + 1 x = 0.5 * x + E until i > 3",
+        "local y, z = both(E) x = 2 * y + z", "local y, z = E, E y, z = z, y x = y - z", "local y, z, w = E, E if w == nil then x = z end",
+        "assert(x < 1e400, 'far')", "if C then error('early') end" },
 }
 local function text(symbol, depth)
     if symbol == "N" then return r() < 0.5 and tostring(r(-3, 9)) or ("%.3f"):format(r() * 4 - 2) end
@@ -513,9 +483,10 @@ test("random functions give the same bits read as called", function()
     math.randomseed(tonumber(os.getenv("DINAL_READING_SEED")) or 1)
     local cases, read, values = tonumber(os.getenv("DINAL_READING_CASES")) or 1500, 0, 0
     for case = 1, cases do
-        local text = "local a, p, list, helper = ...\nreturn function(t)\n" .. body() .. "\nend"
+        local text = "local a, p, list, helper, both, none = ...\nlocal function triangle(n) return n == 0 and 0 or n + triangle(n - 1) end\n" ..
+            "return function(t)\n" .. body() .. "\nend"
         local f = assert(load(text))(r() < 0.5 and r(5) or r() * 3, { x = r() - 0.5, q = { n = r(-4, 4) } },
-            { 1, 2.5, -3 }, function(u, v) if u < v then return u - v end return u + 0.5 * v end)
+            { 1, 2.5, -3 }, function(u, v) if u < v then return u - v end return u + 0.5 * v end, function(u) return u, -u end)
         local why = excitation.scripted(f):obstacle()
         if not why then
             read = read + 1
@@ -525,7 +496,7 @@ test("random functions give the same bits read as called", function()
                 why:find "2%^53", why)
         end
     end
-    assert(read > 0.8 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
+    assert(read > 0.7 * cases and values > 50 * cases, read .. " read, " .. values .. " values")
 end)
 
 test("long strings are compared by content", function()

@@ -57,7 +57,7 @@ test("names of columns are not markup, invalid bytes are not letters, and a tabl
     assert(utf8.len(text) and not text:find "[%z\1-\8\11-\31\127]", text)
     assert(not text:find "\194\155" and not text:find "\226\128\174" and text:find "\tkept", text)
     has(page, '{ 1, &quot;two&quot;, { three = 3 } }\nlist = { 1, 2 }')
-    raises_here(function() r:add{ io.stdout } end, "r:add: this table contains values that cannot be shown")
+    refused { { "r:add{ io.stdout }", "r:add: this table contains values that cannot be shown" } }
 end)
 
 test("wide items do not widen the page, and long ones may continue on the next sheet", function()
@@ -82,8 +82,10 @@ test("an animation is on the page", function()
     assert(first ~= second)
     has(page, "url(#" .. first .. "-floor0)", "url(#" .. second .. "-floor0)", 'dur="1.000s"')
     has(page, "A run in motion, t = 0 to 6", "animateTransform")
-    raises_here(function() r:animate(3) end, "r:animate takes a run, got 3")
-    raises_here(function() r:animate(run, { file = "x.svg" }) end, "file")
+    refused {
+        { "r:animate(3)", "r:animate takes a run, got 3" },
+        { 'r:animate(run, { file = "x.svg" })', "file" },
+    }
 end)
 
 test("an animation of several bodies is on the page with all of them", function()
@@ -108,13 +110,15 @@ test("an item that cannot be reported is refused with a reason", function()
         { { title = " " }, "report: the title is empty" },
     })
     local r = report{ title = "x" }
-    raises_here(function() r:text() end, "what is added must be text, got nil")
-    raises_here(function() r:table(3) end, "r:table takes data")
-    raises_here(function() r:plot(3) end, "r:plot takes what plot{ ... } takes")
-    raises_here(function() r:plot{ { run.t } } end, "plot")
-    raises_here(function() r:add(nil) end, "r:add takes")
-    raises_here(function() r:save "x.doc" end, "must end in .html")
-    raises_here(function() r:save "/nowhere/x.html" end, "/nowhere/x.html")
+    refused {
+        { "r:text()", "what is added must be text, got nil" },
+        { "r:table(3)", "r:table takes data" },
+        { "r:plot(3)", "r:plot takes what plot{ ... } takes" },
+        { "r:plot{ { run.t } }", "plot" },
+        { "r:add(nil)", "r:add takes" },
+        { 'r:save "x.doc"', "must end in .html" },
+        { 'r:save "/nowhere/x.html"', "/nowhere/x.html" },
+    }
     equal(tostring(r), 'report "x" with 0 parts')
 end)
 

@@ -2,15 +2,15 @@ dofile "tests/lua/support.lua"
 
 test("the work of a torque is its integral over the body's way, and a slipping clutch dissipates", function()
     local rig = system { bodies = { motor = { I = 1 }, load = { I = 3 } }, links = { clutch = { "motor", "load", Rd = 2 } } }
-    local run = rig:simulate { velocity0 = { motor = 3 }, M = { motor = 1 }, t_end = 4 }
-    local e = closes(run, "driven clutch")
+    local run = expect(rig, { velocity0 = { motor = 3 }, M = { motor = 1 }, t_end = 4 })
+    local e = run:energy()
     near(e.motor.input, run.motor.theta[1001], 1e-12)
     near(e.clutch.dry, 2 * (run.clutch.theta[1001]), 1e-11)
     near(e.total.dry, e.clutch.dry, 0)
     local free = rig:simulate { velocity0 = { motor = 3 }, t_end = 4 }:energy() -- 4.5 becomes 4 (3/4)^2 / 2
     has(tostring(free):gsub("%s+", " "), "input kinetic spring viscous dry", "motor 0 -4.21875 0 0 0", "load 0 0.84375 0 0 0",
         "clutch 0 0 0 0 3.375 ", "all 0 -3.375 0 0 3.375 ")
-    raises_here(function() return e.brake end, "this energy has no 'brake'; its bodies and links are load, motor, clutch")
+    refused { { "e.brake", "this energy has no 'brake'; its bodies and links are load, motor, clutch" } }
 end)
 
 test("the energy adds up with everything that several bodies may have", function()
@@ -58,16 +58,12 @@ end)
 
 test("the energy adds up for one body with varying friction and bristles, and for a locked pair on a belt", function()
     local one = system { I = 1, k = 4, Rd = 0.3, Re = 0.4 }:simulate { theta0 = 1.03, t_end = 20 }:energy()
-    local run = system { I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }:simulate { theta0 = 1.03, t_end = 20 }
+    local run = expect({ I = 1, k = 4, Rd = 0.3, Re = 0.4, normal = function(t) return 1 end }, { theta0 = 1.03, t_end = 20 },
+        { story = { "dry friction that varies", "It turned at theta = -0.88" } })
     near(run:energy().total.dry, one.total.dry, 1e-12)
-    closes(run, "varying")
-    says(run, "dry friction that varies", "It turned at theta = -0.88")
     has_not(run:explain(), "because", "M is constant")
-    closes(system { I = 1, k = 2, friction = friction.lugre { Rd = 1, Re = 1.5, speed = 0.1, stiffness = 100, damping = 1 } }
-        :simulate { M = function(t) return 3 * math.sin(t) end, t_end = 5 }, "bristles", 1e-10)
-    local pair = pair({ I = 1, k = 1, Rd = 5 }, { I = 1 }, { Rd = 5 })
-        :simulate { belt = { a = 0.3 }, velocity0 = { a = 0.3, b = 0.3 }, t_end = 3 }
-    local e = closes(pair, "carried")
+    expect({ I = 1, k = 2, friction = friction.lugre { Rd = 1, Re = 1.5, speed = 0.1, stiffness = 100, damping = 1 } }, { M = function(t) return 3 * math.sin(t) end, t_end = 5 }, { closes = 1e-10 })
+    local e = expect(pair({ I = 1, k = 1, Rd = 5 }, { I = 1 }, { Rd = 5 }), { belt = { a = 0.3 }, velocity0 = { a = 0.3, b = 0.3 }, t_end = 3 }):energy()
     equal(e.total.dry, 0.0)
     near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
 end)
@@ -178,7 +174,7 @@ test("the energy of a link called like a column hides that column", function()
     near(energy.belt.dry, 3.375, 1e-12)
     equal(energy.total.belt, 0.0)
     equal(#energy.dry, #run)
-    raises(function() return energy.blt end, "belt")
+    refused { { "energy.blt", "belt" } }
 end)
 
 test("the energy at the start is that of all bodies and links", function()

@@ -37,8 +37,7 @@ test("the default integrator is exact if that accepts M, otherwise spectral", fu
     equal(tostring(nd:simulate { M = sampled, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
     local chirp = excitation.chirp { from = 0, to = 1, duration = 1 }
     equal(tostring(nd:simulate { M = chirp, t_end = 1, dt = 1 }.integrator), "integrator.spectral{}")
-    raises_here(function() nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} } end,
-      "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}")
+    refused { { "nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} }", "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}" } }
 end)
 
 test("t_start shifts the window, and is not an event", function()
@@ -56,10 +55,12 @@ test("missing, superfluous and misspelt options are errors that suggest the righ
         { { t_end = 1, dt = 0.1, times = { 1 } }, "exclude each other" },
         { { t_end = 1, dt = 0.1, m = 1 }, "did you mean 'M'?" },
     })
-    raises_here(function() nd:simulate() end, "one table of named options", "sys:simulate{")
-    raises_here(function() nd:simulate(1, 2) end, "one table of named options")
-    raises_here(function() nd:simulate { 1, 2 } end, "named options only")
-    raises_here(function() nd.simulate { t_end = 1, dt = 0.1 } end, "use a colon: sys:simulate{")
+    refused {
+        { "nd:simulate()", "one table of named options", "sys:simulate{" },
+        { "nd:simulate(1, 2)", "one table of named options" },
+        { "nd:simulate { 1, 2 }", "named options only" },
+        { "nd.simulate { t_end = 1, dt = 0.1 }", "use a colon: sys:simulate{" },
+    }
 end)
 
 test("impossible windows and grids are errors with their values", function()
@@ -72,15 +73,18 @@ test("impossible windows and grids are errors with their values", function()
 end)
 
 test("a step above the stability limit is refused with the limit", function()
-    raises_here(function() nondimensional {}:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.5 } } end,
-        "h = 0.5 exceeds the stability limit 0.45", "use h <=")
-    raises_here(function() integrator.dinal1989 { h = 0.1, stop = "txt" } end, "stop must be 'listing' or 'text'", "did you mean 'text'?")
+    refused {
+        { "nondimensional {}:simulate { t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.5 } }", "h = 0.5 exceeds the stability limit 0.45", "use h <=" },
+        { 'integrator.dinal1989 { h = 0.1, stop = "txt" }', "stop must be 'listing' or 'text'", "did you mean 'text'?" },
+    }
 end)
 
 test("more rows than memory allows are refused with their size and the cure, before anything is computed", function()
     local before = os.clock()
-    raises_here(function() nd:simulate { t_end = 1e9, dt = 1e-6 } end, "rows need", "GB", "use dt >=")
-    raises_here(function() nd:simulate { t_end = 1e70, dt = 1e-300 } end, "rows need")
+    refused {
+        { "nd:simulate { t_end = 1e9, dt = 1e-6 }", "rows need", "GB", "use dt >=" },
+        { "nd:simulate { t_end = 1e70, dt = 1e-300 }", "rows need" },
+    }
     assert(os.clock() - before < 1)
 end)
 
@@ -106,6 +110,38 @@ test("without dt and times a short run has 1001 rows, and a continued one keeps 
     equal(run.t[1001], 7.0)
     equal(#run:continue { t_end = 8 }, 1251)
     equal(nd:simulate { theta0 = 1, t_end = 1 }.theta[501], nd:simulate { theta0 = 1, t_end = 1, dt = 0.001 }.theta[501])
+end)
+
+
+test("rows lie at t_start + i dt and the last one at t_end, exactly, whatever h and dt", function()
+    local sys = nondimensional { zeta = 0.1 }
+    local function times(t_start, t_end, dt, by) return sys:simulate { theta0 = 1, t_start = t_start, t_end = t_end, dt = dt, integrator = by }.t end
+    equal(times(0, 1, 0.25), vector { 0, 0.25, 0.5, 0.75, 1 })
+    equal(times(-1, 0.5, 0.5), vector { -1, -0.5, 0, 0.5 })
+    equal(times(0, 1, 0.4), vector { 0, 0.4, 0.8, 1 })
+    equal(times(0, 1, 5), vector { 0, 1 })
+    for _, t_end in ipairs { 1, 0.77, 3.14159 } do
+        for _, dt in ipairs { 0.01, 0.0123, 0.5, 7 } do
+            local wanted = times(0, t_end, dt)
+            equal(wanted[#wanted], t_end)
+            for _, h in ipairs { 0.01, 0.0031, 0.02 } do
+                for _, by in ipairs { integrator.rk4 { h = h }, integrator.dinal1989 { h = h } } do equal(times(0, t_end, dt, by), wanted) end
+            end
+        end
+    end
+    -- A dt that divides the window to rounding leaves no tiny last interval; late times are rounded by more than the division is.
+    for _, dt in ipairs { 0.1, 0.01, 0.001, 0.3, 0.7, 1 / 3, 1e-3 / 3, 8.0299443320945283e-07 } do
+        for _, n in ipairs { 1, 3, 7, 10, 100, 1000, 12345 } do
+            local t = times(0, n * dt, dt)
+            equal(#t, n + 1, dt)
+            equal(t[n + 1], n * dt)
+        end
+        for _, start in ipairs { 0.1, 1e3 + 0.1, -149121.09375, 1e6 + 1 / 3, 1e9 + 0.7 } do
+            if dt >= 2 ^ -47 * math.abs(start) then equal(#times(start, start + 16 * dt, dt), 17, start) end
+        end
+    end
+    equal(#times(0, 0.3, 0.1), 4) -- 3 * 0.1 > 0.3
+    refused { { "sys:simulate { t_start = 1e9, t_end = 1e9 + 1e-3, dt = 1e-8 }", "dt = 1e-08", "rounding" } }
 end)
 
 finish()

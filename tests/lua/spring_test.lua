@@ -43,7 +43,7 @@ test("a spring that fails is reported with the angle and its line, and the rows 
 end)
 
 test("each mistake in a spring is one sentence with the name of the option", function()
-    raises_here(function() spring.polynomial(3) end, "spring.polynomial takes a table of powers of theta, got 3")
+    refused { { "spring.polynomial(3)", "spring.polynomial takes a table of powers of theta, got 3" } }
     refuses(spring.polynomial, {
         { { [0.5] = 1 }, "the power 0.5 must be a whole number from 1 to 31" },
         { { [32] = 1 }, "the power 32 must be" },
@@ -52,7 +52,7 @@ test("each mistake in a spring is one sentence with the name of the option", fun
         { { [3] = "a" }, "[3] must be a finite number, got the string" },
         { { [3] = 1 / 0 }, "[3] must be a finite number, got inf" },
     })
-    raises_here(function() duffing.c = 2 end, "a spring cannot be changed")
+    refused { { "duffing.c = 2", "a spring cannot be changed" } }
 end)
 
 test("a motion that a softening spring releases ends with a message about the motion, not about M", function()
@@ -107,6 +107,33 @@ test("the energy of a spring like a staircase is its integral, also where sample
         local start = sys:simulate { theta0 = theta, t_end = 1e-9 }:energy().start
         near(start.spring, integral(theta), 1e-13)
     end
+end)
+
+test("the energy of springs is their integral and adds up", function()
+    for i, case in ipairs {
+        { spring.polynomial { [3] = 0.5 }, function(x) return x ^ 4 / 8 end },
+        { spring.polynomial { [1] = -0.5, [2] = 0.2, [5] = 0.3 }, function(x) return -x ^ 2 / 4 + x ^ 3 / 15 + x ^ 6 / 20 end },
+        { math.sin, function(x) return 1 - math.cos(x) end },
+        { function(x) return math.abs(x) < 0.3 and 0 or 4 * (x - (x > 0 and 0.3 or -0.3)) end, function(x) return 2 * math.max(0, math.abs(x) - 0.3) ^ 2 end },
+    } do
+        local run = expect({ I = 1, k = 0.8, C = 0.03, Rd = 0.05, Re = 0.1, spring = case[1] },
+            { M = excitation.harmonic { amplitude = 0.8, omega = 0.7 }, theta0 = 1.3, t_end = 60, dt = 0.5 }, { closes = 1e-11 }, i)
+        local energy = run:energy()
+        for row, theta in ipairs(run.theta) do near(energy.spring[row], 0.4 * theta ^ 2 + case[2](theta), 1e-14) end
+        near(energy.error:abs():max(), 0, 1e-11 * energy.total.flow)
+    end
+end)
+
+test("the steady motion of Duffing's oscillator is the limit of a long run, or a place where the spring pulls little enough", function()
+    local M, period = excitation.harmonic { omega = 0.8 }, 2.5 * math.pi
+    local sys = system { I = 1, k = 1, C = 0.2, Rd = 0.05, spring = spring.polynomial { [3] = 1 } }
+    local s, long = sys:steady { M = M }, sys:simulate { M = M, times = { 60 * period }, t_end = 60 * period }
+    assert(s.status == "steady" and s.stable and s.symmetric)
+    near(s.run.theta[1], long.theta[1], 1e-9)
+    near(s.run.velocity[1], long.velocity[1], 1e-9)
+    local rest = system { I = 1, k = 1, Rd = 0.5, spring = spring.polynomial { [3] = 1 } }:steady { M = 0.3 * M }.rest
+    near(rest.upper + rest.upper ^ 3, 0.2, 1e-9)
+    near(rest.lower, -rest.upper, 1e-9)
 end)
 
 finish()

@@ -159,7 +159,7 @@ test("wrong units are errors", function()
         { { units = { t = "a, b" } }, "without quotes and commas" },
         { { unit = metres }, "did you mean 'units'?" },
     })
-    raises_here(function() plain:simulate(asked{ units = { M = ("N"):rep(25) } }) end, "the unit of M must be a short word")
+    refused { { 'plain:simulate(asked{ units = { M = ("N"):rep(25) } })', "the unit of M must be a short word" } }
     refuses(function(units) run:plot{ units = units, show = false } end, {
         { { theta = 'm"' }, "the unit of theta must be a short word" },
         { "m", "units must be a table such as" },

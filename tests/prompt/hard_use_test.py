@@ -13,6 +13,9 @@ sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 from home import PROGRAM, AtHome
 from session import PATIENCE, PROMPT
 
+check = unittest.TestCase()
+equal, contained = check.assertEqual, check.assertIn
+
 LONG_FILE = ("local run = nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-3 } print('running') "
              "io.stdout:flush() while true do run:save 'run.csv' end")
 SMALL_RUN = "nondimensional{}:simulate{ theta0 = 1, t_end = 1000, dt = 1e-2 }"
@@ -35,34 +38,34 @@ class Signals(HardUse):
         for number in (signal.SIGTERM, signal.SIGHUP):
             with self.subTest(number):
                 process = self.start("-e", LONG_FILE)
-                self.assertEqual(process.stdout.readline(), "running\n")
+                equal(process.stdout.readline(), "running\n")
                 until = time.monotonic() + PATIENCE
                 while not any(name.endswith(".tmp") for name in self.files()) and time.monotonic() < until:
                     pass
                 process.send_signal(number)
-                self.assertEqual(process.wait(PATIENCE), -number)
-                self.assertEqual([name for name in self.files() if name != "run.csv"], [])
+                equal(process.wait(PATIENCE), -number)
+                equal([name for name in self.files() if name != "run.csv"], [])
 
     def test_a_signal_that_is_ignored_stays_so(self):
         process = self.start("-e", "print('running') io.stdout:flush() io.read()", stdin=subprocess.PIPE,
                              preexec_fn=lambda: signal.signal(signal.SIGHUP, signal.SIG_IGN))
-        self.assertEqual(process.stdout.readline(), "running\n")
+        equal(process.stdout.readline(), "running\n")
         process.send_signal(signal.SIGHUP)
-        self.assertEqual(process.communicate("\n", PATIENCE)[1], "")
-        self.assertEqual(process.returncode, 0)
+        equal(process.communicate("\n", PATIENCE)[1], "")
+        equal(process.returncode, 0)
 
     def test_a_file_that_is_larger_than_allowed_is_an_error(self):
         process = self.start("-e", SMALL_RUN + ":save 'run.csv'",
                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100000, 100000)))
         errors = process.communicate(timeout=PATIENCE)[1]
-        self.assertIn("cannot write 'run.csv': File too large", errors)
-        self.assertEqual((process.returncode, self.files()), (1, []))
+        contained("cannot write 'run.csv': File too large", errors)
+        equal((process.returncode, self.files()), (1, []))
 
     def test_a_reader_that_goes_away_does_not_end_a_session(self):
         session = self.session()
         session.enter("p = io.popen('true', 'w')")
         session.enter("for i = 1, 100 do p:write(('x'):rep(10000)) end p:close()")
-        self.assertEqual(session.enter("6 * 7"), "42")
+        equal(session.enter("6 * 7"), "42")
 
     def test_after_a_stop_the_prompt_and_the_line_are_drawn_again(self):
         session = self.session()
@@ -72,7 +75,7 @@ class Signals(HardUse):
         session.child.kill(signal.SIGCONT)
         session.child.expect_exact("> ")
         session.press("7\r")
-        self.assertIn("\n42\n", session.until_prompt())
+        contained("\n42\n", session.until_prompt())
 
 
 class Limits(HardUse):
@@ -80,7 +83,7 @@ class Limits(HardUse):
         for stream in ("stderr", "stdout"):
             with self.subTest(stream):
                 process = self.start("--max-time", "0.1", "-e", f"while true do io.{stream}:write(('x'):rep(65536)) end")
-                self.assertIn(process.wait(5), (1, -signal.SIGPIPE))
+                contained(process.wait(5), (1, -signal.SIGPIPE))
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full")
     def test_a_history_that_cannot_be_written_is_told_once(self):
@@ -88,16 +91,16 @@ class Limits(HardUse):
         folder.mkdir(parents=True)
         (folder / "history").symlink_to("/dev/full")
         session = self.session()
-        self.assertIn("(this input is not in", session.enter("1 + 1").replace("\n", " "))
-        self.assertEqual(session.enter("2 + 2"), "4")
+        contained("(this input is not in", session.enter("1 + 1").replace("\n", " "))
+        equal(session.enter("2 + 2"), "4")
 
     def test_safe_mode_writes_scripts_only_where_scripts_are(self):
         session = self.session("--safe")
         session.enter("1 + 1")
         for command in (":save notes.txt", ":save .bashrc"):
-            self.assertIn("does not end in .lua", session.enter(command))
-        self.assertIn("are in lab.lua", session.enter(":save lab.lua"))
-        self.assertEqual([name for name in self.files() if not name.startswith(".")], ["lab.lua"])
+            contained("does not end in .lua", session.enter(command))
+        contained("are in lab.lua", session.enter(":save lab.lua"))
+        equal([name for name in self.files() if not name.startswith(".")], ["lab.lua"])
 
 
 class Strangers(HardUse):
@@ -129,10 +132,10 @@ class Strangers(HardUse):
             shown = self.raw(session, line)
             for sequence in ("\x1b]", "\x07", "\x1b[2J", "\x1b[8m", "\x9b"):
                 self.assertNotIn(sequence, shown, line)
-            self.assertIn("owned", shown, line)
-        self.assertIn("\x1b[31mred\x1b[0m\tnil", self.raw(session, "print('\\27[31mred\\27[0m', nil)"))
+            contained("owned", shown, line)
+        contained("\x1b[31mred\x1b[0m\tnil", self.raw(session, "print('\\27[31mred\\27[0m', nil)"))
         piped = subprocess.run([PROGRAM, "--safe", "-e", "print('\\27[2J', 1)"], capture_output=True, check=True)
-        self.assertEqual(piped.stdout, b"\x1b[2J\t1\n")
+        equal(piped.stdout, b"\x1b[2J\t1\n")
 
 
 class Interrupted(HardUse):
@@ -141,7 +144,7 @@ class Interrupted(HardUse):
 
     def interrupted(self, code):
         process = self.start("-e", code)
-        self.assertEqual(process.stdout.readline(), "running\n")
+        equal(process.stdout.readline(), "running\n")
         process.send_signal(signal.SIGINT)
         out, errors = process.communicate(timeout=PATIENCE)
         return process.returncode, out, errors
@@ -149,21 +152,21 @@ class Interrupted(HardUse):
     def test_a_script_gets_what_was_done_and_can_save_it(self):
         code, out, errors = self.interrupted(
             "dinal.on_interrupt = function(run) run:save 'part.csv' print(run.outcome, #run > 5) end " + self.RUN)
-        self.assertEqual((code, out), (130, "interrupted\ttrue\n"))
+        equal((code, out), (130, "interrupted\ttrue\n"))
         self.assertRegex(errors, "^dinal: interrupted")
-        self.assertEqual(self.files(), ["part.csv"])
+        equal(self.files(), ["part.csv"])
 
     def test_an_error_in_it_is_told_and_a_second_ctrl_c_stops_it(self):
         code, _, errors = self.interrupted("dinal.on_interrupt = function() error 'oh' end " + self.RUN)
-        self.assertEqual(code, 130)
-        self.assertIn("oh", errors)
+        equal(code, 130)
+        contained("oh", errors)
         process = self.start("-e", "dinal.on_interrupt = function(run) print(run) io.stdout:flush() while true do end end "
                                    "print 'running' io.stdout:flush() while true do end")
-        self.assertEqual(process.stdout.readline(), "running\n")
+        equal(process.stdout.readline(), "running\n")
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.stdout.readline(), "nil\n")  # there was no run
+        equal(process.stdout.readline(), "nil\n")  # there was no run
         process.send_signal(signal.SIGINT)
-        self.assertEqual(process.wait(PATIENCE), 130)
+        equal(process.wait(PATIENCE), 130)
 
 
 if __name__ == "__main__":

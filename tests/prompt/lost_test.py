@@ -10,6 +10,9 @@ import pexpect
 from home import PROGRAM, AtHome
 from session import CONTINUATION, ESCAPES, PATIENCE, environment
 
+check = unittest.TestCase()
+equal, contained = check.assertEqual, check.assertIn
+
 RUN = "run = nondimensional{ zeta = 0.1 }:simulate{ theta0 = 1, t_end = 1.2, dt = 0.1 }"
 RIGHT, PASTE, PASTED = "\x1b[C", "\x1b[200~", "\x1b[201~"
 
@@ -69,15 +72,15 @@ class Walked(AtHome):
         session = self.session()
         for line, answer in self.CASES:
             shown = " ".join(session.enter(line).split())
-            self.assertIn(answer, shown, line)
+            contained(answer, shown, line)
             self.assertTrue(answer or not shown, f"{line}: {shown}")
 
     def test_an_error_is_not_blamed_on_the_line_of_an_earlier_one(self):
         session = self.session()
         M = "function(t) return sin(t) end"
-        self.assertIn("in M at t = 0", session.enter(f"system{{ I = 1, k = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
+        contained("in M at t = 0", session.enter(f"system{{ I = 1, k = 1 }}:simulate{{ M = {M}, t_end = 1 }}"))
         shown = session.enter("sin(3)")
-        self.assertIn("1 | sin(3)", shown)
+        contained("1 | sin(3)", shown)
         self.assertNotIn("in M", shown)
 
 
@@ -86,29 +89,29 @@ class Folders(AtHome):
         session = self.session()
         (self.home / "inner").mkdir()
         (self.home / "inner" / "a.lua").write_text("")
-        self.assertEqual(session.enter(f":cd {self.home}"), str(self.home))
-        self.assertIn("inner/", session.enter(":ls"))
+        equal(session.enter(f":cd {self.home}"), str(self.home))
+        contained("inner/", session.enter(":ls"))
         self.assertTrue(session.enter(":cd inner").endswith("/inner"))
-        self.assertEqual(session.enter(":ls"), "a.lua")
+        equal(session.enter(":ls"), "a.lua")
         self.assertTrue(session.enter(":pwd").endswith("/inner"))
-        self.assertIn("No such file", session.enter(":cd nowhere"))
-        self.assertEqual(session.enter(":cd"), str(self.home))
+        contained("No such file", session.enter(":cd nowhere"))
+        equal(session.enter(":cd"), str(self.home))
 
     def test_safe_mode_stays_where_it_is(self):
         session = self.session("--safe")
-        self.assertIn("not possible in safe mode", session.enter(":cd /"))
-        self.assertIn("the current folder only", session.enter(":ls /"))
+        contained("not possible in safe mode", session.enter(":cd /"))
+        contained("the current folder only", session.enter(":ls /"))
 
 
 class Pasted(AtHome):
     def test_a_prompt_in_front_is_no_part_of_the_line(self):
         session = self.session()
         for line in ("> 6 * 7", ">> 6 * 7", "dinal> 6 * 7", "In [12]: 6 * 7", "  > 6 * 7"):
-            self.assertEqual(session.enter(line), "42", line)
-        self.assertEqual(session.enter("> ?tutorial").split()[0], "help()")
+            equal(session.enter(line), "42", line)
+        equal(session.enter("> ?tutorial").split()[0], "help()")
         session.enter("> for i = 1, 2 do", CONTINUATION)
         session.enter(">   print(i)", CONTINUATION)
-        self.assertEqual(session.enter("> end"), "1\n2")
+        equal(session.enter("> end"), "1\n2")
 
     def test_a_dialogue_is_typed_again_and_what_it_printed_is_left_out(self):
         session = self.session()
@@ -120,7 +123,7 @@ class Pasted(AtHome):
         session = self.session()
         session.enter("x = (2", CONTINUATION)
         session.enter("> 1)", None)
-        self.assertEqual(session.enter("x"), "true")
+        equal(session.enter("x"), "true")
 
 
 class Blocks(AtHome):
@@ -136,10 +139,10 @@ class Blocks(AtHome):
     def test_an_empty_line_and_words_for_leaving_are_answered(self):
         session = self.session()
         session.enter("for i = 1, 2 do", CONTINUATION)
-        self.assertIn("(line 1 waits for end; Ctrl-C cancels it)", session.enter("", CONTINUATION))
-        self.assertIn("(for of line 1 waits for end; Ctrl-C cancels it, and :quit then leaves dinal)",
-                      session.enter("quit", CONTINUATION))
-        self.assertEqual(session.enter("print(i) end"), "1\n2")
+        contained("(line 1 waits for end; Ctrl-C cancels it)", session.enter("", CONTINUATION))
+        contained("(for of line 1 waits for end; Ctrl-C cancels it, and :quit then leaves dinal)",
+                  session.enter("quit", CONTINUATION))
+        equal(session.enter("print(i) end"), "1\n2")
 
     def test_the_arrow_up_brings_the_lines_of_the_block_back(self):
         session = self.session()
@@ -148,13 +151,13 @@ class Blocks(AtHome):
         session.enter("print(10*i)", CONTINUATION)
         session.press("\x1b[A\r")
         session.until_prompt(CONTINUATION)
-        self.assertEqual(session.enter("end"), "10\n10\n20\n20")
+        equal(session.enter("end"), "10\n10\n20\n20")
         session.press("\x1b[A\r")  # the whole block, and no line of it alone
         self.assertTrue(session.until_prompt().rstrip().endswith("10\n10\n20\n20"))
 
     def test_a_colon_at_the_end_of_a_line_opens_no_block(self):
-        self.assertIn("a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end",
-                      self.session().enter("range(10):").replace("\n", " "))
+        contained("a colon needs the name of a method after it; a loop is: for i = 1, 10 do ... end",
+                  self.session().enter("range(10):").replace("\n", " "))
 
 
 class Words(AtHome):
@@ -164,7 +167,7 @@ class Words(AtHome):
         for line, method in (("max(run.theta)", "run.theta:max()"), ("sin(run.t)", "run.t:sin()"),
                              ("math.sin(2*run.t)", "(2*run.t):sin()"), ("explain(run)", "run:explain()")):
             shown = session.enter(line).replace("\n", " ")
-            self.assertIn(f"did you mean '{method}'?", shown)
+            contained(f"did you mean '{method}'?", shown)
             self.assertNotIn("attempt", session.enter(method))
         for line, hint in (("2**3", "a power is x^2"), ("system I = 1", "write its options in braces: system{ ... }"),
                            ("run.events[10].t", "'run.events' has 2 elements"), ("who", ":who lists your variables"),
@@ -175,25 +178,25 @@ class Words(AtHome):
                            ("run.theta[99]", "('run.theta' has 13 elements)"),
                            ("run.events[1].theat", "there is no 'theat' in it; did you mean 'theta'?"),
                            ("log10(2)", "math.log(x, 10)")):
-            self.assertIn(hint, session.enter(line).replace("\n", " "), line)
+            contained(hint, session.enter(line).replace("\n", " "), line)
 
     def test_names_that_are_overwritten_are_noticed_and_come_back(self):
         session = self.session()
-        self.assertIn("(system was a name of dinal", session.enter("system = 3"))
+        contained("(system was a name of dinal", session.enter("system = 3"))
         session.enter("system = dinal.system")
-        self.assertEqual(session.enter("system{ I = 1, k = 1 }.omega0"), "1.0")
-        self.assertIn("(math.pi existed before", session.enter("math.pi = 3"))
+        equal(session.enter("system{ I = 1, k = 1 }.omega0"), "1.0")
+        contained("(math.pi existed before", session.enter("math.pi = 3"))
         session.enter(":reset")
-        self.assertEqual(session.enter("math.pi > 3"), "true")
-        self.assertEqual(session.enter("x = { system = 3 }"), "")
-        self.assertEqual(session.enter("local system = 3 print(system)"), "3")
+        equal(session.enter("math.pi > 3"), "true")
+        equal(session.enter("x = { system = 3 }"), "")
+        equal(session.enter("local system = 3 print(system)"), "3")
 
     def test_ans_survives_a_look(self):
         session = self.session()
         session.enter("x = 1")
         session.enter("6 * 7")
         session.enter("x")
-        self.assertEqual(session.enter("ans"), "42")
+        equal(session.enter("ans"), "42")
 
     def test_help_answers_words_that_are_no_names(self):
         session = self.session()
@@ -208,23 +211,23 @@ class Typing(AtHome):
         terminal.enter("answer = 6*7")
         terminal.type("ans")
         terminal.wait(lambda: terminal.row() == "> answer = 6*7")
-        self.assertEqual(terminal.colour("wer"), "black")  # bright, as pyte calls it
+        equal(terminal.colour("wer"), "black")  # bright, as pyte calls it
         terminal.type("x")
         terminal.wait(lambda: terminal.row() == "> ansx")
         terminal.type("\x7f")
         terminal.wait(lambda: terminal.row() == "> answer = 6*7")
         terminal.type(RIGHT + "+1\r")
         terminal.enter("")
-        self.assertEqual(terminal.enter("answer"), "43")
+        equal(terminal.enter("answer"), "43")
 
     def test_tab_after_an_event_and_after_integrator(self):
         session = self.session()
         session.enter(RUN)
         session.press("run.events[1].th\t\r")
-        self.assertIn("-0.7292", session.until_prompt())
+        contained("-0.7292", session.until_prompt())
         session.press("s = nondimensional{}:simulate{ theta0 = 1, t_end = 1, dt = 0.5, integrator = integrator.sp\t} }\r")
         session.until_prompt()
-        self.assertIn("by spectral", session.enter("s"))
+        contained("by spectral", session.enter("s"))
 
     def test_a_long_text_stops_at_the_end_of_the_page(self):
         session = self.session(PAGER="less")
@@ -234,7 +237,7 @@ class Typing(AtHome):
         session.child.expect_exact("lines: Space goes on, q ends --")
         session.press("q")
         session.until_prompt()
-        self.assertEqual(session.enter("6 * 7"), "42")
+        equal(session.enter("6 * 7"), "42")
 
     def test_a_window_of_one_row_and_two_columns(self):
         child = pexpect.spawn(PROGRAM, env=environment(self.home), cwd=str(self.home), dimensions=(1, 2), timeout=PATIENCE)
@@ -248,7 +251,7 @@ class Typing(AtHome):
         child.send("os.exit(7)\r")
         child.expect(pexpect.EOF)
         child.close()
-        self.assertEqual((child.exitstatus, child.signalstatus), (7, None))
+        equal((child.exitstatus, child.signalstatus), (7, None))
 
     def test_the_next_page_has_the_size_of_the_window_by_then(self):
         session = self.session(PAGER="less")

@@ -10,6 +10,9 @@ sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 from home import HAS_READLINE, AtHome
 from session import AT_ONCE, CONTINUATION, CTRL_C, CTRL_D, ENTER, UP, end, processor_time
 
+check = unittest.TestCase()
+equal, contained = check.assertEqual, check.assertIn
+
 
 
 class SessionTest(AtHome):
@@ -44,52 +47,52 @@ class Values(PromptTest):
 
     def test_expressions_are_shown_without_print_and_kept_in_ans(self):
         session = self.session()
-        self.assertEqual(session.enter("1 + 1"), "2")
-        self.assertEqual(session.enter("ans * 1.5"), "3.0")
-        self.assertEqual(session.enter("'a\"b'"), r'"a\"b"')
-        self.assertEqual(session.enter("{ 1, x = { 2 } }"), "{ 1, x = { 2 } }")
-        self.assertEqual(session.enter("= ans.x[1]"), "2")
-        self.assertEqual(session.enter("y = 5"), "")
-        self.assertEqual(session.enter("y, nil"), "5\tnil")
-        self.assertEqual(session.enter("y = 6; y"), "6")
-        self.assertEqual(session.enter("y = 7; z = y; y + z;"), "")
-        self.assertEqual(session.enter("ans"), "14")
-        self.assertEqual(session.enter("s = 'a;b'; s"), '"a;b"')
-        self.assertEqual(session.enter("for i = 1, 2 do y = i; z = i end; z"), "2")
-        self.assertEqual(session.enter("y = 1; print(y)"), "1")
+        equal(session.enter("1 + 1"), "2")
+        equal(session.enter("ans * 1.5"), "3.0")
+        equal(session.enter("'a\"b'"), r'"a\"b"')
+        equal(session.enter("{ 1, x = { 2 } }"), "{ 1, x = { 2 } }")
+        equal(session.enter("= ans.x[1]"), "2")
+        equal(session.enter("y = 5"), "")
+        equal(session.enter("y, nil"), "5\tnil")
+        equal(session.enter("y = 6; y"), "6")
+        equal(session.enter("y = 7; z = y; y + z;"), "")
+        equal(session.enter("ans"), "14")
+        equal(session.enter("s = 'a;b'; s"), '"a;b"')
+        equal(session.enter("for i = 1, 2 do y = i; z = i end; z"), "2")
+        equal(session.enter("y = 1; print(y)"), "1")
 
     def test_an_error_is_told_and_the_session_goes_on(self):
         session = self.session()
-        self.assertEqual(session.enter("error('oh')"), "input:1: oh")
-        self.assertIn("syntax error near 'b'", session.enter("a b"))
-        self.assertEqual(session.enter("1"), "1")
+        equal(session.enter("error('oh')"), "input:1: oh")
+        contained("syntax error near 'b'", session.enter("a b"))
+        equal(session.enter("1"), "1")
 
     def test_os_exit_at_the_prompt_gives_its_code(self):
         session = self.session()
         session.press("os.exit(3)" + ENTER)
-        self.assertEqual(session.exit_code(), 3)
+        equal(session.exit_code(), 3)
 
     def test_lua_code_reads_the_next_line_that_is_typed(self):
         session = self.session()
         self.run_on(session, "busy() name = io.read()")
         session.enter("Coulomb")
-        self.assertEqual(session.enter("name"), '"Coulomb"')
+        equal(session.enter("name"), '"Coulomb"')
 
     def test_a_script_with_i_is_followed_by_the_prompt(self):
         (self.home / "lab.lua").write_text("w = 42 print(...)\n")
         session = self.session("-i", "lab.lua", "here")
-        self.assertIn("here", session.greeting)
-        self.assertEqual(session.enter("w"), "42")
+        contained("here", session.greeting)
+        equal(session.enter("w"), "42")
 
 
 class Lines(PromptTest):
     def test_a_chunk_may_take_several_lines(self):
         session = self.session()
-        self.assertEqual(session.enter("function f(x)", CONTINUATION), "")
-        self.assertEqual(session.enter("return 2*x", CONTINUATION), "")
-        self.assertEqual(session.enter("end"), "")
-        self.assertEqual(session.enter("f(", CONTINUATION), "")
-        self.assertEqual(session.enter("21)"), "42")
+        equal(session.enter("function f(x)", CONTINUATION), "")
+        equal(session.enter("return 2*x", CONTINUATION), "")
+        equal(session.enter("end"), "")
+        equal(session.enter("f(", CONTINUATION), "")
+        equal(session.enter("21)"), "42")
 
     def test_a_pasted_block_runs_once_and_shows_its_last_value(self):
         session = self.session()
@@ -101,16 +104,16 @@ class Lines(PromptTest):
         session = self.session()
         session.enter("f(", CONTINUATION)
         session.press(CTRL_D)
-        self.assertIn("near <eof>", session.until_prompt())
-        self.assertEqual(session.enter("1"), "1")  # and no blank line before it
-        self.assertEqual(session.leave(), 0)
+        contained("near <eof>", session.until_prompt())
+        equal(session.enter("1"), "1")  # and no blank line before it
+        equal(session.leave(), 0)
         self.assertTrue(session.child.before.endswith("\r\n"))
 
     def test_a_dumb_terminal_gets_no_escape_sequences(self):
         session = self.session(prompt="> ", TERM="dumb")
         session.press("{ 1, 'two' }" + ENTER)
         session.child.expect_exact('{ 1, "two" }\r\n> ')
-        self.assertEqual(session.leave(), 0)
+        equal(session.leave(), 0)
         self.assertNotIn("\x1b", session.greeting + session.child.before)
 
     def test_prompts_can_be_set_as_in_lua(self):
@@ -128,7 +131,7 @@ class History(PromptTest):
         first.enter("  print(i)", CONTINUATION)
         first.enter("end")
         first.enter("'later'")
-        self.assertEqual(first.leave(), 0)
+        equal(first.leave(), 0)
         second = self.session()
         second.press(UP + UP)
         self.assertTrue(second.enter("").endswith("1\n2"))
@@ -140,25 +143,25 @@ class History(PromptTest):
         session.enter("end")
         session.press(UP + UP + "y")  # the block, and the line above its end: "  xy = 1"
         session.enter("")
-        self.assertEqual(session.enter("xy"), "1")
+        equal(session.enter("xy"), "1")
 
     def test_the_file_is_for_its_user_only(self):
         session = self.session(XDG_STATE_HOME=str(self.home / "some" / "state"))
         session.enter("1")
         folder = self.home / "some" / "state" / "dinal"
-        self.assertEqual(stat.S_IMODE(folder.stat().st_mode), 0o700)
-        self.assertEqual(stat.S_IMODE((folder / "history").stat().st_mode), 0o600)
-        self.assertIn("\n1\n", (folder / "history").read_text())
+        equal(stat.S_IMODE(folder.stat().st_mode), 0o700)
+        equal(stat.S_IMODE((folder / "history").stat().st_mode), 0o600)
+        contained("\n1\n", (folder / "history").read_text())
 
     def test_a_session_that_ends_by_os_exit_is_kept(self):
         session = self.session()
         session.press("os.exit()" + ENTER)
         session.exit_code()
-        self.assertIn("os.exit()", (self.home / ".local/state/dinal/history").read_text())
+        contained("os.exit()", (self.home / ".local/state/dinal/history").read_text())
 
     def test_the_prompt_works_where_no_history_can_be_written(self):
         session = self.session(XDG_STATE_HOME="/dev/null")
-        self.assertEqual(session.enter("1 + 1"), "2")
+        equal(session.enter("1 + 1"), "2")
 
     def test_blank_and_repeated_lines_are_not_kept(self):
         session = self.session()
@@ -174,12 +177,12 @@ class Interrupts(PromptTest):
         session.press("x = 1 -- never")
         session.press(CTRL_C)
         session.until_prompt()
-        self.assertEqual(session.enter("x"), "nil")
+        equal(session.enter("x"), "nil")
         session.enter("do", CONTINUATION)
         session.press("x = 2")
         session.press(CTRL_C)
         session.until_prompt()
-        self.assertEqual(session.enter("x"), "nil")
+        equal(session.enter("x"), "nil")
 
     def test_ctrl_c_stops_lua_code_and_keeps_the_session(self):
         session = self.session()
@@ -188,7 +191,7 @@ class Interrupts(PromptTest):
                      "return setmetatable({}, { __tostring = function() busy() while true do end end })",
                      "return { 1, { setmetatable({}, { __tostring = function() busy() while true do end end }) } }"]:
             self.assertRegex(self.interrupted(session, line), r"^\n?interrupted( at input:1)?\n")
-            self.assertEqual(session.enter("1 + 1"), "2")
+            equal(session.enter("1 + 1"), "2")
 
     def test_a_second_ctrl_c_ends_c_code_that_never_returns(self):
         session = self.session()
@@ -199,7 +202,7 @@ class Interrupts(PromptTest):
         while session.child.isalive():  # two that come at the same time, to a machine that does other work, are one
             session.press(CTRL_C)
             time.sleep(0.3)
-        self.assertEqual(session.exit_code(), 130)
+        equal(session.exit_code(), 130)
 
     def test_the_rows_of_an_interrupted_run_are_kept_in_ans(self):
         session = self.session()
@@ -209,15 +212,15 @@ class Interrupts(PromptTest):
                   "excitation.harmonic{ amplitude = 1, frequency = 0.3 } + "
                   "excitation.scripted(function(t) if t > 9 then busy() end return 0 end)"]:
             shown = self.interrupted(session, f"return nd:simulate{{ M = {M}, t_end = 1e6, dt = 1 }}")
-            self.assertIn("interrupted at input:1", shown)
-            self.assertIn("the finished part of the run is in dinal.partial and in ans (ans:continue()\ncontinues it):\n", shown)
-            self.assertEqual(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
+            contained("interrupted at input:1", shown)
+            contained("the finished part of the run is in dinal.partial and in ans (ans:continue()\ncontinues it):\n", shown)
+            equal(session.enter("#ans > 0 and #ans < 1000001 and #ans.theta == #ans"), "true")
 
     def test_a_run_that_is_stopped_within_M_is_marked_interrupted(self):
         session = self.session()
         session.enter("function M(t) if t > 9 then busy() while true do end end return 1 end")
         self.interrupted(session, "nondimensional{}:simulate{ M = M, t_end = 20, dt = 1 }")
-        self.assertEqual(session.enter("ans.outcome"), '"interrupted"')
+        equal(session.enter("ans.outcome"), '"interrupted"')
 
     def test_ctrl_c_is_not_lost_while_keys_are_read(self):
         # The terminal throws away what was typed before: readline must not wait for a key that is gone.
@@ -226,15 +229,15 @@ class Interrupts(PromptTest):
             session.press("x = 1 -- never")
             session.press(CTRL_C)
             session.until_prompt()
-        self.assertEqual(session.enter("x"), "nil")
+        equal(session.enter("x"), "nil")
 
     def test_the_rows_of_a_run_whose_excitation_failed_are_kept_in_ans(self):
         session = self.session()
         session.enter("M = function(t) if t > 2 then error('broken') end return 0 end")
         shown = session.enter("nondimensional{}:simulate{ M = M, t_end = 10, dt = 0.1 }")
-        self.assertIn("input:1: broken", shown)
-        self.assertIn("is in dinal.partial and in ans", shown)
-        self.assertEqual(session.enter("ans.t[#ans] > 1.5"), "true")
+        contained("input:1: broken", shown)
+        contained("is in dinal.partial and in ans", shown)
+        equal(session.enter("ans.t[#ans] > 1.5"), "true")
         self.assertNotIn("ans", session.enter("error('another')"))  # the old run is not announced again
 
     def test_a_closed_terminal_ends_the_program(self):
@@ -257,13 +260,13 @@ class PlainLines(SessionTest):
         session.press("x = 8")
         session.press(CTRL_C)
         session.until_prompt()
-        self.assertEqual(session.enter("x"), "7")
+        equal(session.enter("x"), "7")
         session.press("f(" + ENTER)
         session.until_prompt("\n>> ")
         session.press(CTRL_D)
-        self.assertIn("near <eof>", session.until_prompt())
-        self.assertIn("interrupted at input:1", self.interrupted(session, "busy() while true do end"))
-        self.assertEqual(session.leave(), 0)
+        contained("near <eof>", session.until_prompt())
+        contained("interrupted at input:1", self.interrupted(session, "busy() while true do end"))
+        equal(session.leave(), 0)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,9 @@ sys.dont_write_bytecode = True  # no folder __pycache__ in the source tree
 
 from home import PROGRAM, AtHome
 
+check = unittest.TestCase()
+equal = check.assertEqual
+
 # No clock decides how long anything may take: a process has so much processor time, and ends by a signal beyond it.
 MOST_SECONDS = 120
 
@@ -76,9 +79,9 @@ class SweepFiles(AtHome):
 
     def check_result(self, out):
         file, printed = self.expected()
-        self.assertEqual(out, printed)
-        self.assertEqual((self.home / "map.csv").read_bytes(), file)
-        self.assertEqual(sorted(entry.name for entry in self.home.iterdir()), ["map.csv", "map.lua"])
+        equal(out, printed)
+        equal((self.home / "map.csv").read_bytes(), file)
+        equal(sorted(entry.name for entry in self.home.iterdir()), ["map.csv", "map.lua"])
 
     def wait_for(self, process, sign):
         """Waits until sign() is true; the process must not end before."""
@@ -98,18 +101,18 @@ class SweepFiles(AtHome):
 
     def test_the_result_is_a_file_and_the_same_call_reads_it(self):
         code, out, err = self.run_script()
-        self.assertEqual((code, err), (0, ""))
+        equal((code, err), (0, ""))
         self.check_result(out)
         mark = (self.home / "map.csv").stat().st_mtime_ns
-        self.assertEqual(self.run_script(), (0, out, ""))
-        self.assertEqual((self.home / "map.csv").stat().st_mtime_ns, mark)
+        equal(self.run_script(), (0, out, ""))
+        equal((self.home / "map.csv").stat().st_mtime_ns, mark)
 
     def test_what_was_killed_goes_on(self):
         for count in (5, 20):
             self.killed_after(count)
         self.assertGreaterEqual(self.blocks(), 20)
         code, out, _ = self.run_script()
-        self.assertEqual(code, 0)
+        equal(code, 0)
         self.check_result(out)
 
     def test_what_was_cut_off_or_changed_is_done_anew(self):
@@ -121,12 +124,12 @@ class SweepFiles(AtHome):
         for length in [0, 1, *random.Random(1).sample(places, 20)]:
             with self.subTest(length):
                 self.part.write_bytes(whole[:length])
-                self.assertEqual(self.run_script(), (0, out, ""))
-                self.assertEqual((self.home / "map.csv").read_bytes(), file)
+                equal(self.run_script(), (0, out, ""))
+                equal((self.home / "map.csv").read_bytes(), file)
                 (self.home / "map.csv").unlink()
         place = whole.index(b"0.", len(whole) // 2)
         self.part.write_bytes(whole[:place] + b"7" + whole[place + 1:])
-        self.assertEqual(self.run_script(), (0, out, ""))
+        equal(self.run_script(), (0, out, ""))
         self.check_result(out)
         (self.home / "map.csv").write_bytes(file[:-3])
         self.assertIn("has been changed since it was written", self.run_script()[2])
@@ -137,16 +140,16 @@ class SweepFiles(AtHome):
                      lambda: self.part.write_text("sweep 1234\n")):
             make()
             code, _, err = self.run_script()
-            self.assertEqual(code, 1)
+            equal(code, 1)
             self.assertRegex(err, "sweep: 'map.csv.part' (is not a regular file|holds the points of another sweep).*; remove it, or give another file")
-            self.assertEqual((self.home / "other").read_text(), "mine")
+            equal((self.home / "other").read_text(), "mine")
             self.part.unlink()
 
     def test_two_at_once(self):
         first = self.start(WAIT="0.003")
         self.wait_for(first, lambda: self.blocks() >= 2)
         code, _, err = self.run_script()
-        self.assertEqual(code, 1)
+        equal(code, 1)
         self.assertIn("another process is at the same sweep and writes 'map.csv.part': wait for it, or give another file", err)
         out = first.communicate()[0]
         self.check_result(out)
@@ -159,10 +162,10 @@ class SweepFiles(AtHome):
             process = self.start(HOLD=held)
             self.wait_for(process, lambda: os.path.exists(held))
             process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(), 130)
-        self.assertEqual(len(re.findall(rb"^\d+,", self.part.read_bytes(), re.M)), 32)
+            equal(process.wait(), 130)
+        equal(len(re.findall(rb"^\d+,", self.part.read_bytes(), re.M)), 32)
         code, out, _ = self.run_script()
-        self.assertEqual(code, 0)
+        equal(code, 0)
         self.check_result(out)
 
     def test_another_sweep_is_refused(self):
@@ -170,33 +173,33 @@ class SweepFiles(AtHome):
         other = SCRIPT.replace("math.sin", "math.cos")
         self.write(other, workers=2)
         code, _, err = self.run_script()
-        self.assertEqual(code, 1)
+        equal(code, 1)
         self.assertIn("map.lua:2: sweep: 'map.csv.part' holds the points of another sweep", err)
         self.part.unlink()
-        self.assertEqual(self.run_script()[0], 0)
+        equal(self.run_script()[0], 0)
         for old, new in (("0.1, 2, 30", "0.1, 3, 30"), ("file =", "seed = 2, file =")):
             self.write(other.replace(old, new), workers=2)
             code, _, err = self.run_script()
-            self.assertEqual(code, 1)
+            equal(code, 1)
             self.assertIn("'map.csv' is there, and is not the result of this sweep; remove it, or give another file", err)
 
     def test_lines_may_move_and_the_sweep_is_the_same(self):
         code, out, _ = self.run_script()
-        self.assertEqual(code, 0)
+        equal(code, 0)
         self.write("-- a remark\n\n" + SCRIPT, workers=1)
-        self.assertEqual(self.run_script()[:2], (0, out))
+        equal(self.run_script()[:2], (0, out))
 
     def test_what_fails_everywhere_leaves_nothing(self):
         self.write(SCRIPT.replace("math.sin", "math.sine"), workers=2)
         code, _, err = self.run_script()
-        self.assertEqual(code, 1)
+        equal(code, 1)
         self.assertIn("all 600 points failed", err)
-        self.assertEqual([entry.name for entry in self.home.iterdir()], ["map.lua"])
+        equal([entry.name for entry in self.home.iterdir()], ["map.lua"])
 
     def test_a_place_that_cannot_be_written_is_told_at_once(self):
         self.write(SCRIPT.replace("map.csv", "nowhere/map.csv"), workers=2)
         code, _, err = self.run_script()
-        self.assertEqual(code, 1)
+        equal(code, 1)
         self.assertIn("sweep: cannot write 'nowhere/map.csv.part': No such file or directory", err)
         self.write(SCRIPT.replace("map.csv", "map.txt"), workers=2)
         self.assertIn("must end in .csv", self.run_script()[2])
@@ -212,12 +215,12 @@ class SweepFiles(AtHome):
             resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
 
         done = subprocess.run([PROGRAM, "map.lua"], capture_output=True, **{**command, "preexec_fn": full})
-        self.assertEqual(done.returncode, 1)
+        equal(done.returncode, 1)
         self.assertRegex(done.stderr, r"cannot write 'map\.csv\.part': File too large; finished points are kept in 'map\.csv\.part'")
         self.assertGreater(self.blocks(), 20)
         self.assertFalse((self.home / "map.csv").exists())
         code, out, _ = self.run_script()
-        self.assertEqual(code, 0)
+        equal(code, 0)
         self.check_result(out)
 
     def test_the_variables_of_a_launcher_are_not_looked_at(self):
@@ -225,7 +228,7 @@ class SweepFiles(AtHome):
             self.write(script, workers=1)
             printed = self.run_script()[1]
             (self.home / "map.csv").unlink(missing_ok=True)
-            self.assertEqual(self.run_script(SLURM_PROCID="1", OMPI_COMM_WORLD_RANK="1", SLURM_ARRAY_TASK_ID="7"), (0, printed, ""))
+            equal(self.run_script(SLURM_PROCID="1", OMPI_COMM_WORLD_RANK="1", SLURM_ARRAY_TASK_ID="7"), (0, printed, ""))
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """dinal.sweep on engines: the same bytes from each, after any death. Engines that are not installed are skipped.
 
-    python3 sweep_test.py SOURCE PROGRAM [--long], with PYTHONPATH set to the module's folder
+    python3 sweep_test.py SOURCE PROGRAM [--long] [[but] CLASS ...], with PYTHONPATH set to the module's folder
 """
 
 import concurrent.futures as cf
@@ -23,6 +23,9 @@ import unittest
 
 import dinal
 import numpy as np
+
+check = unittest.TestCase()
+equal = check.assertEqual
 
 SOURCE, PROGRAM = [*sys.argv, "", ""][1:3]
 LONG = "--long" in sys.argv
@@ -104,9 +107,9 @@ class Engines(InAFolder):
         """What the engine gives is what the caller alone gives."""
         alone = dinal.sweep(over=over, run=run, seed=3, file="alone.csv", **more)
         other = dinal.sweep(over=over, run=run, seed=3, executor=executor, file="other.csv", **more)
-        self.assertEqual(str(other), str(alone))
-        self.assertEqual(pathlib.Path("other.csv").read_bytes(), pathlib.Path("alone.csv").read_bytes())
-        self.assertEqual(self.files(), ["alone.csv", "other.csv"])
+        equal(str(other), str(alone))
+        equal(pathlib.Path("other.csv").read_bytes(), pathlib.Path("alone.csv").read_bytes())
+        equal(self.files(), ["alone.csv", "other.csv"])
         for name in self.files():
             os.remove(name)
 
@@ -158,10 +161,10 @@ class Engines(InAFolder):
                 os.remove("map.csv")
                 under = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "3"] if name == "MPI" else []
                 done = subprocess.run([*under, sys.executable, *command], capture_output=True, text=True, timeout=120)
-                self.assertEqual(done.returncode, 0, done.stderr)
+                equal(done.returncode, 0, done.stderr)
                 self.assertIn("data: 300 points, 4 of them failed", done.stdout)
-                self.assertEqual(pathlib.Path("map.csv").read_bytes(), wanted)
-                self.assertEqual(self.files(), ["map.csv", "map.lua"])
+                equal(pathlib.Path("map.csv").read_bytes(), wanted)
+                equal(self.files(), ["map.csv", "map.lua"])
         pathlib.Path("map.lua").write_text("return 3")
         self.assertIn("must return a table of the options of sweep", self.python("-m", "dinal.sweep", "map.lua").stderr)
 
@@ -174,7 +177,7 @@ class Page(InAFolder):
         pathlib.Path("map.py").write_text(script.replace("400", "20").replace("200", "10"))
         pathlib.Path("map.lua").write_text(map_file.replace("400", "20").replace("200", "10"))
         commands = re.findall(r"`(python3 map.py .*?|mpirun .*? map.py mpi)`", page) + re.findall(r"^((?:python3|mpirun) .*-m dinal.sweep .*)$", page, re.M)
-        self.assertEqual(len(commands), 6)
+        equal(len(commands), 6)
         files = set()
         for command in commands:
             if "dask" in command:
@@ -187,22 +190,22 @@ class Page(InAFolder):
                 continue
             command = command.replace("mpirun -n 64", "mpirun --allow-run-as-root --oversubscribe -n 3").replace("python3 ", sys.executable + " ")
             done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
-            self.assertEqual(done.returncode, 0, command + done.stderr)
+            equal(done.returncode, 0, command + done.stderr)
             files.add(("py" if "map.py" in command else "lua", pathlib.Path("map.csv").read_text().partition("\n")[2]))
             os.remove("map.csv")
-        self.assertEqual(len(files), 2)
+        equal(len(files), 2)
         self.assertIn("stops.svg", self.files())
 
 
 class Points(InAFolder):
     def test_order(self):
         m = dinal.sweep(over={"r": [1, 2], "g": ["a", "b"]}, run=lambda p: {"y": p.r})
-        self.assertEqual((m.names, m.y.tolist(), list(m.g)), (["r", "g", "y", "error"], [1, 1, 2, 2], ["a", "b", "a", "b"]))
+        equal((m.names, m.y.tolist(), list(m.g)), (["r", "g", "y", "error"], [1, 1, 2, 2], ["a", "b", "a", "b"]))
 
     def test_errors_stay_with_their_points(self):
         m = dinal.sweep(over={"r": [0, 1, 2]}, run=lambda p: {"y": 1 // int(p.r)})
-        self.assertEqual(m.error[0], "ZeroDivisionError: integer division or modulo by zero")
-        self.assertEqual(m.y.tolist()[1:], [1, 0])
+        equal(m.error[0], "ZeroDivisionError: integer division or modulo by zero")
+        equal(m.y.tolist()[1:], [1, 0])
         with self.assertRaisesRegex(dinal.Error, "all 2 points failed; the first one, r = 1: KeyError: 'x'"):
             dinal.sweep(over={"r": [1, 2]}, run=lambda p: {}["x"])
         with self.assertRaisesRegex(dinal.Error, "must return a dict of named numbers such as dict"):
@@ -212,21 +215,21 @@ class Points(InAFolder):
         for executor in (None, lambda: cf.ProcessPoolExecutor(1)):
             with self.assertRaises(SystemExit) as caught:
                 dinal.sweep(over={"r": [1, 2]}, run=leave, executor=executor)
-            self.assertEqual(caught.exception.code, 7)
+            equal(caught.exception.code, 7)
 
     def test_random_numbers_are_of_the_point(self):
         def draw(seed):
             return dinal.sweep(over={"r": range(50)}, run=lambda p, chance: {"u": chance.random()}, seed=seed).u.tolist()
-        self.assertEqual(draw(1), draw(1))
+        equal(draw(1), draw(1))
         self.assertNotEqual(draw(1), draw(2))
-        self.assertEqual(len(set(draw(1))), 50)
+        equal(len(set(draw(1))), 50)
 
     def test_progress(self):
         for run in (slow, dinal.lua("function(p) return { y = 1 } end")):
             told = []
             dinal.sweep(over=OVER, run=run, progress=lambda *now: told.append(now))
-            self.assertEqual(told[-1], (300, 300))
-            self.assertEqual(told, sorted(told))
+            equal(told[-1], (300, 300))
+            equal(told, sorted(told))
 
     def test_what_is_wrong(self):
         for error, options in ((TypeError, dict(over={"r": [1]}, run=slow, workers=2)), (TypeError, dict(run=slow)),
@@ -236,7 +239,7 @@ class Points(InAFolder):
                                (ValueError, dict(over={"r": [1]}, run=slow, file="map.txt"))):
             with self.assertRaises(error):
                 dinal.sweep(**options)
-        self.assertEqual(self.files(), [])
+        equal(self.files(), [])
 
 
 class Deaths(InAFolder):
@@ -247,10 +250,10 @@ class Deaths(InAFolder):
         with cf.ProcessPoolExecutor(2) as pool, self.assertRaisesRegex(dinal.Error, "a worker was killed; the same call continues"):
             dinal.sweep(over=over, run=die, executor=pool, file="map.csv")
         self.assertIsInstance(dinal.partial, dinal.Data)
-        self.assertEqual(dinal.sweep(over=over, run=die, file="map.csv").y.tolist(), list(range(20)))
+        equal(dinal.sweep(over=over, run=die, file="map.csv").y.tolist(), list(range(20)))
         told = []
         m = dinal.sweep(over=over, run=die_often, executor=lambda: cf.ProcessPoolExecutor(2), progress=lambda *now: told.append(now))
-        self.assertEqual((m.y.tolist(), told[-1]), (list(range(20)), (20, 20)))
+        equal((m.y.tolist(), told[-1]), (list(range(20)), (20, 20)))
 
     def started(self, engine):
         process = subprocess.Popen([sys.executable, "script.py", engine], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
@@ -269,7 +272,7 @@ class Deaths(InAFolder):
 
     def test_the_caller_dies_or_is_interrupted(self):
         pathlib.Path("script.py").write_text(SCRIPT)
-        self.assertEqual(self.python("script.py", "none").returncode, 0)
+        equal(self.python("script.py", "none").returncode, 0)
         wanted = pathlib.Path("map.csv").read_bytes()
         chance = random.Random(1)
         for engine in ("none", "pool"):
@@ -286,9 +289,9 @@ class Deaths(InAFolder):
                 if what == signal.SIGINT:
                     self.assertNotIn("Traceback", err)
             done = self.python("script.py", engine)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            self.assertEqual(pathlib.Path("map.csv").read_bytes(), wanted)
-            self.assertEqual(self.files(), ["map.csv", "script.py"])
+            equal(done.returncode, 0, done.stderr)
+            equal(pathlib.Path("map.csv").read_bytes(), wanted)
+            equal(self.files(), ["map.csv", "script.py"])
 
     def test_two_callers(self):
         pathlib.Path("script.py").write_text(SCRIPT.replace(".002", ".02"))
@@ -296,8 +299,8 @@ class Deaths(InAFolder):
         first.stdout.readline()
         second = self.python("script.py", "none")
         self.assertIn("another process is at the same sweep", second.stderr)
-        self.assertEqual(self.end(first), "")
-        self.assertEqual(first.returncode, 0)
+        equal(self.end(first), "")
+        equal(first.returncode, 0)
 
     def test_a_full_disk(self):
         limits = resource.getrlimit(resource.RLIMIT_FSIZE)
@@ -312,7 +315,7 @@ class Deaths(InAFolder):
         done = []
         dinal.sweep(over=OVER, run=slow, file="map.csv", progress=lambda now, count: done.append(now))
         self.assertGreater(done[0], 30)
-        self.assertEqual(self.files(), ["map.csv"])
+        equal(self.files(), ["map.csv"])
 
     def test_another_function_is_refused(self):
         code = """
@@ -331,7 +334,7 @@ class Deaths(InAFolder):
         pathlib.Path("helper.py").write_text("B = 1")
         for before in ("", "# a remark\n\n"):
             shown = self.python("-c", before + code)
-            self.assertEqual((shown.returncode, shown.stderr), (0, ""))
+            equal((shown.returncode, shown.stderr), (0, ""))
         changes = [("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("c=3", "c=5"), ("p.r)", "p.r + 1)"), ("3.", "4."), ("C = 5", "C = 4"),
                    ("d = 6", "d = 5"), ("7 * x", "8 * x")]
         # All in one process, as to start one takes longer than to refuse.
@@ -398,10 +401,13 @@ class Lock(unittest.TestCase):
                 "threading.Thread(target=lambda: dinal.lua('while true do local t = {} end'), daemon=True).start()\ntime.sleep(.1)")
         for _ in range(2):
             shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=30)
-            self.assertEqual((shown.returncode, shown.stderr), (0, ""))
+            equal((shown.returncode, shown.stderr), (0, ""))
 
 
 if __name__ == "__main__":
     import warnings
     warnings.simplefilter("ignore", DeprecationWarning)  # of tornado, within Dask
-    unittest.main(argv=sys.argv[:1] + [word for word in sys.argv[3:] if word != "--long"])
+    words = [word for word in sys.argv[3:] if word != "--long"]
+    if words[:1] == ["but"]:
+        words = [name for name, kind in globals().items() if isinstance(kind, type) and name not in words]
+    unittest.main(argv=sys.argv[:1] + words)

@@ -38,15 +38,4 @@ inline double error_of(const motion::Run& run, const ExactMotion& exact, const m
     return worst;
 }
 
-/// The slope of log error over log h, by least squares.
-inline double order_of(const std::vector<std::pair<double, double>>& errors) {
-    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-    for (const auto& [h, error] : errors) {
-        const double x = std::log(h);
-        const double y = std::log(error);
-        n += 1, sx += x, sy += y, sxx += x * x, sxy += x * y;
-    }
-    return (n * sxy - sx * sy) / (n * sxx - sx * sx);
-}
-
 }  // namespace dinal::truth

@@ -1,12 +1,12 @@
-// User functions as C++ lambdas, and runs with additional features.
+// User functions as C++ lambdas.
 #pragma once
 
 #include <functional>
+#include <memory>
+#include <span>
 #include <utility>
 
 #include "model/drive.hpp"
-#include "support/catch.hpp"
-#include "support/measure.hpp"
 
 namespace dinal::truth {
 
@@ -27,16 +27,6 @@ inline std::shared_ptr<model::UserFunction> written(Body body) {
 }
 inline model::Excitation native(model::Term term) {
     return model::Excitation::make(std::move(term)).value();
-}
-inline model::Excitation feedback(Body body) {
-    return native(model::Scripted{.function = written(std::move(body)), .feedback = true});
-}
-
-inline motion::Run run_more(const model::Oscillator& system, const model::Drive& drive, double t_end, double dt,
-                            motion::MethodView method) {
-    auto run = motion::simulate(system, drive, {0, t_end}, motion::Grid::every(dt), method);
-    if (!run) FAIL(run.error().sentence);
-    return std::move(run).value();
 }
 
 }  // namespace dinal::truth

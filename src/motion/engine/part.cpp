@@ -103,10 +103,11 @@ std::vector<std::string> names_at(const model::System& system, const model::Driv
     return names;
 }
 
-/// The rows of a joint's columns, followed by the acceleration of a body.
+/// The rows of a joint's columns, followed by the acceleration of a body if the run has a column of it.
 Rows rows_at(const model::System& system, const Run& run, std::size_t joint, const std::vector<std::string>& names,
              std::size_t states) {
-    const std::size_t rows = run.rows.table().size(), more = system.is_link(joint) ? 0 : 1;
+    const std::size_t rows = run.rows.table().size(), acceleration = run.names().size() + joint;
+    const std::size_t more = !system.is_link(joint) && acceleration < run.rows.table().columns() ? 1 : 0;
     Growing<double> table(rows, names.size() + more);
     double* to = table.writable();
     const auto copy = [&](std::size_t column) {
@@ -117,7 +118,7 @@ Rows rows_at(const model::System& system, const Run& run, std::size_t joint, con
         const bool own = c > 0 && c + states < names.size();
         copy(static_cast<std::size_t>(run.find(own ? system.joints[joint].name + "." + names[c] : names[c]).value()));
     }
-    if (more > 0) copy(run.names().size() + joint);
+    if (more > 0) copy(acceleration);
     return Rows(std::move(table));
 }
 
