@@ -493,8 +493,6 @@ test("two bodies that a preload holds together stop at once, and stay together",
     closes(run)
 end)
 
-finish()
-
 test("a feedback of the velocity and a preload hold a body together, as dry friction and a preload do", function()
     local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
     for _, amplitude in ipairs { 0.3, 0.9, 1.6 } do
@@ -570,3 +568,5 @@ test("a feedback that changes just beside a body at rest is decided where the bo
     }
     near(run.theta[#run.t], 0, 1e-11)
 end)
+
+finish()
