@@ -123,6 +123,15 @@ void Conditions::let_go(double t) {
     cease();
 }
 
+double Conditions::belt_of(std::size_t body, const Moment& at) const {
+    return mechanics_.has_belt(body) ? mechanics_.belt(body, at.t, at.side) : 0;
+}
+
+/// Returns the least slip of a body against its belt that its velocity can have.
+double Conditions::least_slip(std::size_t body, const Moment& at) const {
+    return std::max(std::numeric_limits<double>::min(), 4 * rounding * std::fabs(belt_of(body, at)));
+}
+
 void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
     if (!any_) return;
     if (slides_.any()) slides_.follow(mode);
@@ -149,12 +158,12 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         if (now != 0 && now != standing_[i] && bit < 64) (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
         standing_[i] = now;
         double& v = y[n + i];
-        if (leaves && std::fabs(v) <= std::numeric_limits<double>::min()) {
+        if (leaves && std::fabs(v - belt_of(i, at)) <= least_slip(i, at)) {
             sizes_.find(mechanics_, last, at);
             const double size = sizes_.on(mechanics_.system().joints[i]);
             const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
-            v = model::sign_of(how.way) * std::max(std::numeric_limits<double>::min(), speed);
             t = at.t + little_later * unit_;
+            v = belt_of(i, {t, Side::at, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
         }
     }
     if (t > at.t && mechanics_.next_break(at.t) <= t) t = at.t;
@@ -204,7 +213,7 @@ void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint
     const std::size_t n = mechanics_.bodies();
     std::vector<double> y(at.y.begin(), at.y.end()), margins, then;
     for (std::size_t i = 0; i < n; ++i) {
-        if (standing_[i] > 1) y[n + i] = std::copysign(std::numeric_limits<double>::min(), standing_[i] == 2 ? 1 : -1);
+        if (standing_[i] > 1) y[n + i] = belt_of(i, at) + (standing_[i] == 2 ? 1 : -1) * least_slip(i, at);
     }
     function.margins({at.t, at.side, y}, margins);
     const double h = little_later * unit_;
