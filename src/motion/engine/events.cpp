@@ -70,7 +70,9 @@ bool Engine::cross(const Ending& ending) {
         for (const SlideChange& change : begun) recorder_->tell_slide(now_, change);
         return restart_contacts(Because::impact);
     }
-    return goes_on ? decide(true) : fail(Outcome::chattering);
+    if (!goes_on) return fail(Outcome::chattering);
+    // Where no function jumps, contacts stay as they are.
+    return crossed.jumps || !crossed.changes.slides.empty() ? decide(true) : true;
 }
 
 /// Handles a slip that has reached 0, or passed it because the belt jumped.
