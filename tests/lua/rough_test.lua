@@ -67,4 +67,19 @@ test("noise in M is followed as accurately as possible, also with two bodies", f
     end
 end)
 
+test("what is found in a steep pulse is not noise of the motion behind it", function()
+    local c, w, A = 10.968540029560247, 5.0162678889507557e-07, 2847704.8565944256
+    local function load(_, theta) return -0.1 * theta^3 end
+    local sys = system { I = 1, k = 2, C = 0.2 }
+    local function at(breaks)
+        local M = excitation.scripted(function(t, theta) return load(t, theta) + A * math.max(0, 1 - ((t - c) / w)^2) end, { breaks = breaks })
+        return sys:simulate { M = M, theta0 = 1, velocity0 = -1, t_end = 20 }:at(20)
+    end
+    -- The pulse is an impulse of 4/3 A w.
+    local before = sys:simulate { M = load, theta0 = 1, velocity0 = -1, t_end = c }
+    local theta, velocity = before:at(c)
+    local after = sys:simulate { M = load, theta0 = theta, velocity0 = velocity + 4 / 3 * A * w, t_start = c, t_end = 20 }:at(20)
+    for _, breaks in ipairs { {}, { c }, { c - w, c + w } } do near(at(breaks), after, 1e-6) end
+end)
+
 finish()

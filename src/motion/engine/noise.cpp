@@ -37,6 +37,7 @@ constexpr double most_noise_of_rate = 64;  // multiple of the tolerance; a rough
 Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
     const std::size_t n = mechanics.bodies(), all = n + mechanics.states();
     floor_.noise.resize(all), floor_.greatest.resize(all), stalled_.resize(all);
+    tolerated_.assign(all, 0), found_on_.assign(all, model::never);
     may_be_rough_.assign(all, 0);
     std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n), may_be_rough_.end(), 1);
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
@@ -50,14 +51,22 @@ Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
 
 void Noise::pass(const Segment& s) {
     for (std::size_t k = 0; k < may_be_rough_.size(); ++k) {
-        if (may_be_rough_[k] != 0) floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
+        if (may_be_rough_[k] == 0) continue;
+        floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
+        // What was found in a short pulse is not noise of the motion behind it.
+        constexpr double much_longer = 16, far_below = 1.0 / 64;
+        double& noise = floor_.noise[k];
+        if (!(noise > 0) || !(s.h > much_longer * found_on_[k])) continue;
+        const double tail = cheb::tail(cheb::fit(acting(s, k)));
+        if (tail < far_below * noise) noise = 2 * tail, found_on_[k] = s.h;
     }
 }
 
 double Noise::clear(double tolerance) const {
     double most = 0;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) {
-        if (floor_.noise[i] > tolerance * floor_.greatest[i]) most = std::max(most, floor_.noise[i]);
+        const double noise = std::max(tolerated_[i], floor_.noise[i]);
+        if (noise > tolerance * floor_.greatest[i]) most = std::max(most, noise);
     }
     return most;
 }
@@ -70,6 +79,7 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
     const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
     bool any = false;
     std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m);
+    const std::vector<double> noise_before = floor_.noise;
     for (std::size_t i = 0; i < n + m; ++i) {
         if (may_be_rough_[i] == 0) continue;
         const double of_all = cheb::tail(cheb::fit(acting(s, i)));
@@ -139,6 +149,10 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
         if (!(rough.usual > alike * tail)) continue;
         noise = above * std::max(tail, rough.most);
         any = true;
+    }
+    for (std::size_t i = 0; i < n + m; ++i) {
+        if (floor_.noise[i] != noise_before[i]) found_on_[i] = s.h;
+        tolerated_[i] = std::max(tolerated_[i], floor_.noise[i]);
     }
     return any;
 }

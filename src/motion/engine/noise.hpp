@@ -36,7 +36,7 @@ inline constexpr double rough_stretch = 1e-3;
 
 class Proofs;
 
-/// Measures noise and remembers it for the rest of the run.
+/// Measures noise and remembers it.
 class Noise {
 public:
     explicit Noise(const Mechanics& mechanics);
@@ -46,7 +46,7 @@ public:
     /// gives the rounding of formulas.
     bool found(const Segment& segment, const Mode& mode, double tolerance, const std::vector<double>& sizes,
                Proofs& proofs);
-    /// Notes the greatest values of a resolved stretch.
+    /// Notes the greatest values of a resolved stretch, and forgets noise that a much longer one does not show.
     void pass(const Segment& segment);
     [[nodiscard]] const Floor& floor() const { return floor_; }
     /// Starts with the noise found by an earlier run of the same system.
@@ -55,7 +55,8 @@ public:
     }
     /// Returns the noise of the noisiest body, torque.
     [[nodiscard]] double of_torques() const { return floor_.noise_of_torques(mechanics_.bodies()); }
-    /// The same if it exceeds the tolerance relative to the greatest torque; otherwise 0.
+    /// Returns the greatest noise that was tolerated at any time if it exceeds the tolerance relative to the greatest
+    /// torque; otherwise 0.
     [[nodiscard]] double clear(double tolerance) const;
 
 private:
@@ -71,6 +72,8 @@ private:
     const Mechanics& mechanics_;
     Floor floor_;
     std::vector<Stalled> stalled_;    ///< for each body and state: the last stretch that it made unresolved
+    std::vector<double> tolerated_;   ///< for each body and state: the greatest noise of the run
+    std::vector<double> found_on_;    ///< half length of the stretch on which the noise was found
     std::vector<char> may_be_rough_;  ///< for each body and state: whether a function acts on it
 };
 
