@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "api/cards.hpp"
 #include "api/classes.hpp"
 #include "api/data.hpp"
 #include "api/lua_run.hpp"
@@ -464,6 +465,8 @@ const lua::Class excitation_class{
      "A torque M(t), or M(t, theta, velocity) with feedback. It cannot be changed; arithmetic makes new ones.",
      "e = 2 * excitation.step{ at = 1 }\nprint(e(0), e(1))  --> 0.0\t2.0"},
     excitation_members,
+    nullptr,
+    excitation_card,
 };
 
 void register_excitation(lua_State* L) {

@@ -11,6 +11,9 @@ namespace dinal::api {
 /// The parameters of the system at `index` and derived quantities, one a line.
 std::string system_card(lua_State* L, int index, const terminal::Display& screen);
 
+/// M(t) as a formula, one line for each term, and its jumps and kinks.
+std::string excitation_card(lua_State* L, int index, const terminal::Display& screen);
+
 /// The method with all its options, including defaults.
 std::string integrator_card(lua_State* L, int index, const terminal::Display& screen);
 

@@ -19,6 +19,7 @@ struct Constant {
         sum.add_constant(amplitude);
     }
     void delay_by(double) {}
+    std::string formula(double gain) const { return number(gain * amplitude); }
 };
 
 inline constexpr text::Option constant_options[] = {
@@ -43,6 +44,7 @@ struct Step {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at) sum.add_constant(amplitude);
     }
+    std::string formula(double gain) const { return number(gain * amplitude) + from_on(at); }
 };
 
 inline constexpr text::Option step_options[] = {
@@ -68,6 +70,7 @@ struct Pulse {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at && inside < at + width) sum.add_constant(amplitude);
     }
+    std::string formula(double gain) const { return number(gain * amplitude) + between(at, at + width); }
 };
 
 inline constexpr text::Option pulse_options[] = {
@@ -103,6 +106,11 @@ struct Ramp {
         } else if (inside >= at) {
             sum.add_line(at, 0, slope);
         }
+    }
+    std::string formula(double gain) const {
+        const std::string rise = factor(gain * slope) + since(at);
+        return duration == never ? rise + from_on(at)
+                                 : rise + between(at, at + duration) + ", then " + number(gain * slope * duration);
     }
 };
 
@@ -142,6 +150,10 @@ struct Square {
     template <class Sum>
     void closed_form(double inside, Sum& sum) const {
         sum.add_constant(value(inside));
+    }
+    std::string formula(double gain) const {
+        return wave("square wave", gain * amplitude, period, at) +
+               (duty == 0.5 ? "" : ", positive for " + number(duty) + " of it");
     }
 };
 
@@ -186,6 +198,7 @@ struct Sawtooth {
         const Cycle c = cycle(inside);
         sum.add_line(c.start, -amplitude, c.end > c.start ? 2 * amplitude / (c.end - c.start) : 0);
     }
+    std::string formula(double gain) const { return wave("sawtooth", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option sawtooth_options[] = {
@@ -231,6 +244,7 @@ struct Triangle {
         const double first = piece.falling ? amplitude : -amplitude;
         sum.add_line(piece.start, first, piece.end > piece.start ? -2 * first / (piece.end - piece.start) : 0);
     }
+    std::string formula(double gain) const { return wave("triangle wave", gain * amplitude, period, at); }
 };
 
 inline constexpr text::Option triangle_options[] = {

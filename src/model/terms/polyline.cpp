@@ -155,6 +155,17 @@ void Polyline::delay_by(double d) {
     most_ = greatest();
 }
 
+std::string Polyline::formula(double gain) const {
+    const Samples& s = *samples;
+    return (gain == 1 ? "" : factor(gain) + "* ") +
+           (s.interpolation == Interpolation::cubic  ? "a cubic spline through "
+            : s.interpolation == Interpolation::hold ? "steps at "
+                                                     : "straight lines through ") +
+           std::to_string(s.t.size()) + " points, t " + number(s.t.front()) + " ... " + number(s.t.back()) +
+           (s.period ? ", again every " + number(*s.period) : "") +
+           (s.origin.empty() ? "" : ", of " + s.origin.substr(0, s.origin.find(", {")));
+}
+
 std::optional<text::Error> Polyline::complaint() const {
     if (!samples || samples->t.empty()) {
         return text::Error{"there are no points; give at least one time and one value"};

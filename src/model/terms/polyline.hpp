@@ -94,6 +94,7 @@ struct Polyline {
     }
     void delay_by(double d);
     [[nodiscard]] std::optional<text::Error> complaint() const;
+    std::string formula(double gain) const;
 
 private:
     bool holds() const { return samples->interpolation == Interpolation::hold; }

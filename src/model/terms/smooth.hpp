@@ -40,6 +40,18 @@ struct Polynomial {
         return text::Error{.sentence = "coefficients is empty; give at least one, as in coefficients = { 1, 0.5 }",
                            .option = "coefficients"};
     }
+    std::string formula(double gain) const {
+        std::string text;
+        for (std::size_t i = 0; i < coefficients.size(); ++i) {
+            const double c = gain * coefficients[i];
+            if (c != 0) {
+                text += text.empty() ? (c < 0 ? "-" : "") : (c < 0 ? " - " : " + ");
+                const std::string power = since(at) + (i == 1 ? "" : "^" + std::to_string(i));
+                text += i == 0 ? number(std::fabs(c)) : factor(std::fabs(c)) + power;
+            }
+        }
+        return text.empty() ? "0" : text;
+    }
 };
 
 inline constexpr text::Option polynomial_options[] = {
@@ -73,6 +85,9 @@ struct Exponential {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at) sum.add_exponential(amplitude, -1 / tau, at);
     }
+    std::string formula(double gain) const {
+        return factor(gain * amplitude) + "exp(-" + since(at) + "/" + number(tau) + ")" + from_on(at);
+    }
 };
 
 inline constexpr text::Option exponential_options[] = {
@@ -104,6 +119,9 @@ struct Gaussian {
     Detail detail() const {
         constexpr double visible = 10;  // exp(-10^2 / 2) = 2e-22 is lost in rounding
         return {at - visible * sigma, at + visible * sigma, sigma / 2};
+    }
+    std::string formula(double gain) const {
+        return factor(gain * amplitude) + "exp(-(" + since(at) + "/" + number(sigma) + ")^2/2)";
     }
 };
 
@@ -147,6 +165,10 @@ struct Harmonic {
         sum.add_sine(amplitude, omega, at, phase);
     }
     void delay_by(double d) { phase -= omega * d; }
+    std::string formula(double gain) const {
+        const std::string shift = phase == 0 ? "" : (phase < 0 ? " - " : " + ") + number(std::fabs(phase));
+        return factor(gain * amplitude) + "sin(" + number(omega) + " " + since(at) + shift + ")";
+    }
 };
 
 inline void omega_of_frequency(Harmonic& h, double frequency) {
@@ -199,6 +221,9 @@ struct HalfSine {
     void closed_form(double inside, Sum& sum) const {
         if (inside >= at && inside < at + width) sum.add_sine(amplitude, std::numbers::pi / width, at, 0);
     }
+    std::string formula(double gain) const {
+        return factor(gain * amplitude) + "sin(pi " + since(at) + "/" + number(width) + ")" + between(at, at + width);
+    }
 };
 
 inline constexpr text::Option half_sine_options[] = {
@@ -234,6 +259,10 @@ struct Chirp {
     double next_break(double t) const { return first_after(t, {at, at + duration}); }
     double constant_from() const { return to > 0 ? never : from > 0 ? at + duration : -never; }
     double most() const { return std::fabs(amplitude); }
+    std::string formula(double gain) const {
+        return factor(gain * amplitude) + "sine of frequency " + number(from) + " ... " + number(to) +
+               between(at, at + duration);
+    }
 };
 
 inline constexpr text::Option chirp_options[] = {

@@ -55,6 +55,8 @@ concept NativeTerm = requires(const T& term, double x) {
     { term.constant_from() } -> std::same_as<double>;
     /// An upper bound of |value|; `never` if unknown.
     { term.most() } -> std::same_as<double>;
+    /// The term times x > 0 as text: "2 sin(3 t)".
+    { term.formula(x) } -> std::same_as<std::string>;
     { T::about } -> std::same_as<const TermText&>;
 };
 
@@ -131,8 +133,23 @@ inline double fraction(double t, double from, double to) {
     return to > from ? (t - from) / (to - from) : 0;
 }
 
+// ---- parts of descriptions
+
 /// "t[3] = 1 is not after t[2] = 2; times must increase", or none.
 std::optional<text::Error> not_increasing(const char* option, std::span<const double> times);
+
+/// "2"
+std::string number(double x);
+/// A number as a factor: "2 ", and nothing for 1.
+std::string factor(double x);
+/// The time since `at`: "t", "(t - 2)" or "(t + 2)".
+std::string since(double at);
+/// " for t >= 2"
+std::string from_on(double at);
+/// " for 1 <= t < 2"
+std::string between(double first, double last);
+/// "2 sawtooth of period 3 that begins at 1"
+std::string wave(const char* shape, double amplitude, double period, double at);
 
 // ---- options shared by terms
 
