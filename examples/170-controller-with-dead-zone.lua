@@ -62,6 +62,6 @@ zone, degrees   turns   stuck from, s   off by   at most   (degrees)
 
 lead, s   slope, degrees   turns   ends at, s  off by   outcome
    0.00              0.0      12        3.336  -1.171   stuck at the end
-   0.05              0.0       1        2.625  +2.000   stuck at the end
+   0.05              0.0       1        2.500  +2.000   stuck at the end
    0.05              1.0       1        0.616  +2.046   stuck at the end
 ]]
