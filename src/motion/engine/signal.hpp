@@ -284,8 +284,11 @@ public:
     }
     /// Returns whether some function of the motion has unknown pieces.
     bool samples_the_motion() const {
-        return std::any_of(parts_.begin(), parts_.end(),
-                           [](const Part& part) { return part.piecewise && !part.piecewise->has_pieces(); });
+        return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) {
+            if (!part.piecewise || part.piecewise->has_pieces()) return false;
+            const model::Formula* read = part.function->function->read();
+            return read == nullptr || read->gave_up();
+        });
     }
     /// Visits its functions of the motion that act at this time; the others drop their piece.
     template <class F>
