@@ -15,7 +15,6 @@ A block fenced as ```sh is not run: it is for what cannot be run here (git clone
 there. --update writes the present output into the documents (then read it!).
 """
 
-import concurrent.futures
 import glob
 import os
 import re
@@ -171,10 +170,9 @@ def main():
         os.path.relpath(path, ROOT) for path in glob.glob(os.path.join(ROOT, "docs", "*.md")) +
         glob.glob(os.path.join(ROOT, "docs", "lab", "*.md")) + glob.glob(os.path.join(ROOT, "docs", "es", "*.md")))
     failed, total = False, 0
-    paths = [os.path.join(ROOT, document) for document in documents]
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:  # each document has a folder of its own
-        results = list(pool.map(check, paths))
-    for document, path, (count, complaints, fresh) in zip(documents, paths, results):
+    for document in documents:
+        path = os.path.join(ROOT, document)
+        count, complaints, fresh = check(path)
         total += count
         for complaint in complaints:
             print(f"{document}: {complaint}")
