@@ -88,21 +88,58 @@ std::string searchable(std::string_view text) {
     return result;
 }
 
-/// Lines about the entries that contain all of the words.
+/// Lines about the entries that contain all of the words, first those with the words in their names.
 std::string entries_that_mention(std::string_view wanted, const terminal::Display& screen) {
     constexpr std::size_t most = 10;
     const std::string words = searchable(wanted);
-    const std::vector<std::string_view> each = words_of(words);
-    std::string text;
-    std::size_t count = 0;
+    std::vector<HelpEntry> in_name, elsewhere;
     for (const HelpEntry& entry : entries()) {
         const lua::Doc& doc = entry.member->doc;
-        const std::string name = listed_name(*entry.section, *entry.member);
-        const std::string all = searchable(fmt::format("{} {} {}", name, signature(doc), doc.summary));
-        const auto has = [&all](std::string_view word) { return all.find(word) != std::string::npos; };
-        if (std::ranges::all_of(each, has) && ++count <= most) text += line_about(name, doc.summary, screen);
+        const std::string name = searchable(listed_name(*entry.section, *entry.member));
+        std::string all = fmt::format("{} {} {}", name, signature(doc), doc.summary);
+        for (const text::Call* call : calls_of(doc)) {
+            for (const text::Option& option : call->options) all.append(" ").append(option.meaning);
+        }
+        const auto has_words = [&words](const std::string& text) {
+            const std::vector<std::string_view> each = words_of(words);
+            return std::ranges::all_of(each,
+                                       [&text](std::string_view word) { return text.find(word) != std::string::npos; });
+        };
+        if (has_words(name)) {
+            in_name.push_back(entry);
+        } else if (has_words(searchable(all))) {
+            elsewhere.push_back(entry);
+        }
     }
-    return count <= most ? text : text + fmt::format("  ... and {} more: use more of the word\n", count - most);
+    in_name.insert(in_name.end(), elsewhere.begin(), elsewhere.end());
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most, in_name.size()); ++i) {
+        const auto [section, member] = in_name[i];
+        text += line_about(listed_name(*section, *member), member->doc.summary, screen);
+    }
+    if (in_name.size() > most) {
+        text += fmt::format("  ... and {} more: use more of the word\n", in_name.size() - most);
+    }
+    return text;
+}
+
+/// The most similar name or option, otherwise the most similar longer word in the summaries.
+std::string likely(std::string_view word) {
+    constexpr std::size_t shortest = 6;
+    std::vector<std::string> names, words;
+    for (const Section& section : sections()) names.emplace_back(section.description->name);
+    for (const HelpEntry& entry : entries()) {
+        const std::string whole = signature(entry.member->doc);
+        for (const lua::Token& token : lua::tokens(whole)) {
+            if (token.kind == lua::TokenKind::name) names.emplace_back(token.text);
+        }
+        for (const lua::Token& token : lua::tokens(entry.member->doc.summary)) {
+            const bool longer = token.kind == lua::TokenKind::name && token.text.size() >= shortest;
+            if (longer) words.push_back(text::lower(token.text));
+        }
+    }
+    const std::string hint = text::did_you_mean(word, names);
+    return hint.empty() ? text::did_you_mean(word, words) : hint;
 }
 
 /// The part of a name after the last separator, "energy" in run.energy; "" without one.
@@ -112,12 +149,11 @@ std::string_view last_name(std::string_view words) {
 }
 
 std::string no_help(std::string_view words) {
-    std::vector<std::string> names = help_names();
-    for (std::string& option : help_option_names()) names.push_back(std::move(option));
-    const std::string hint = text::did_you_mean(words, names);
+    std::string hint = likely(words);
+    if (hint.empty() && !last_name(words).empty()) hint = likely(last_name(words));  // run.enrgy
     const std::string shown = text::quoted(words);  // control characters would steer the terminal
-    return fmt::format("nothing about '{}'{}\n", shown.substr(1, shown.size() - 2),
-                       hint.empty() ? "; help \"contents\" lists what there is" : hint);
+    return fmt::format("nothing about '{}'{}{}\n", shown.substr(1, shown.size() - 2), hint,
+                       hint.empty() ? "; help \"contents\" lists what there is" : "");
 }
 
 std::string contents(const terminal::Display& screen) {
@@ -134,16 +170,41 @@ std::string contents(const terminal::Display& screen) {
     return text + "\nhelp \"name\" says more about each of them.\n";
 }
 
-/// A line for each call that has an option of this name.
-std::string options_named(std::string_view name, const terminal::Display& screen) {
-    std::string lines, last;
-    each_option([&](const HelpEntry& entry, const OptionLine& option) {
+/// Entries, options and mentions; empty without any.
+std::string found_about(std::string_view words, const terminal::Display& screen) {
+    std::string calls, options, last;
+    each_option([&](const HelpEntry& entry, const OptionLine& line) {
+        if (line.option != words) return;
         const std::string call = written_name(*entry.section, *entry.member);
-        if (option.option != name || call == last) return;
+        // A function that is called in two ways has the option twice.
+        if (call != last) calls += (calls.empty() ? "" : ", ") + call;
         last = call;
-        lines += line_about(fmt::format("{}{{ {} }}", call, option.name), option.meaning, screen);
+        options += line_about(fmt::format("{}{{ {} }}", call, line.name), line.meaning, screen);
     });
-    return lines;
+    if (const std::string text = entries_named(words, screen); !text.empty()) {
+        const std::size_t width = std::min<std::size_t>(screen.width, 80) - 1;
+        return calls.empty() ? text : text + text::wrapped("An option of: " + calls, width) + "\n";
+    }
+    if (!options.empty()) return options;
+    // The name may be the user's: help "rig:simulate", where rig is a variable.
+    std::string text = last_name(words).empty() ? "" : entries_named(last_name(words), screen);
+    return text.empty() ? entries_that_mention(words, screen) : text;
+}
+
+/// A question without common words: "how do I fit a record" becomes "fit record".
+std::string without_small_words(std::string_view question) {
+    constexpr std::string_view small =
+        "how do i a an the to can is are of my for in what which why does you it make get";
+    std::vector<std::string_view> rest;
+    for (const std::string_view word : words_of(question)) {
+        if (!has_word(small, text::lower(word))) rest.push_back(word);
+    }
+    return fmt::format("{}", fmt::join(rest, " "));
+}
+
+bool is_question(std::string_view words) {
+    const std::vector<std::string_view> all = words_of(words);
+    return all.size() > 1 && has_word("how what which why where can", text::lower(all.front()));
 }
 
 struct Topic {
@@ -163,10 +224,10 @@ constexpr std::array<Topic, 52> topics = {{
     {"dinal1989 fortran 1989",
      "dinal is named after DINAL, the Fortran program of a report of 1989 about a\n"
      "governor with friction. integrator.dinal1989 is its listing, step by step;\n"
-     "docs/report.md reads the report again.\n"},
+     "run:save \"name.dat\" writes its record; docs/report.md reads the report again.\n"},
     {"readdin",
      "READDIN picked two columns out of the record of DINAL, in 1989, for the\n"
-     "plotter. run:columns does that.\n"},
+     "plotter. run:columns does that; load reads such a record.\n"},
     {"draar",
      "DRAAR drew the two columns that READDIN had picked, in 1989, on a plotter.\n"
      "run:plot and plot do that.\n"},
@@ -303,12 +364,12 @@ constexpr std::array<Topic, 52> topics = {{
     {"seed reproducible", "vector.random{ n = 100, seed = 1 } and sweep{ ..., seed = 1 } repeat the same numbers.\n",
      "random same numbers"},
     {"history undo commands",
-     "The up arrow brings earlier lines back, Ctrl-R searches them, and :save lab.lua\n"
+     ":history lists what was typed, :edit changes the last input in an editor, :save lab.lua\n"
      "writes what ran without error into a script.\n",
      "session save typed previous line"},
     {"settings options arguments",
-     "help \"simulate\" lists the options of a call with their defaults, and Tab\n"
-     "inside its braces offers them.\n",
+     "help \"simulate\" lists the options of a call with their defaults; Shift-Tab shows them\n"
+     "while you type.\n",
      "which list"},
     {"ode45 solve_ivp odeint lsim ode integrate solver",
      "sys:simulate{ M = M, theta0 = 1, t_end = 20 } makes a run; no tolerance and no event\n"
@@ -433,17 +494,19 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
     const std::string english = in_english(text::trimmed(words, " "));
     words = english;
     if (words == "contents") return contents(screen);
-    std::string about = lua_word(words), found = entries_named(words, screen);
-    if (!about.empty()) return about + (found.empty() ? "" : "\n") + found;
-    about = topic(words);
-    // The name may be the user's: help "rig:simulate", where rig is a variable.
-    if (found.empty()) found = entries_named(last_name(words), screen);
-    if (found.empty()) found = options_named(words, screen);
-    if (found.empty()) found = entries_that_mention(words, screen);
-    for (const std::string_view word : words_of(words)) {
+    if (std::string word = lua_word(words); !word.empty()) {
+        const std::string named = entries_named(words, screen);
+        return word + (named.empty() ? "" : "\n") + named;
+    }
+    const std::string rest = without_small_words(words);
+    std::string about(topic(rest.empty() ? words : rest));
+    if (about.empty()) about = lua_word(rest);
+    std::string found = is_question(words) ? "" : found_about(words, screen);
+    if (found.empty() && !rest.empty()) found = found_about(rest, screen);
+    for (const std::string_view word : words_of(rest)) {
         if (about.empty() && found.empty()) about = lua_word(word);
     }
-    if (about.empty() && found.empty()) return no_help(words);
+    if (about.empty() && found.empty()) return no_help(rest.empty() ? words : rest);
     return about + (about.empty() || found.empty() ? "" : "\n") + found;
 }
 

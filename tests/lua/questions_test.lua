@@ -50,7 +50,7 @@ local questions = {
   { "hand in my report", "dinal --report" },
   { "for loop", "for i = 1, 10 do" },
   { "rounding", "math.floor(x + 0.5)" },
-  { "undo", "up arrow" },
+  { "undo", ":history lists" },
   { "quit", "Ctrl-D" },
   { "dead zone", "sys.dead_zone" },
   { "ode45", "sys:simulate{ M" },
