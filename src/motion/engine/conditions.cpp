@@ -139,6 +139,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     // those of floor(10 + velocity).
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
+    const double soon = at.t + little_later * unit_;
     double t = at.t;
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
@@ -162,11 +163,10 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
             sizes_.find(mechanics_, last, at);
             const double size = sizes_.on(mechanics_.system().joints[i]);
             const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
-            t = at.t + little_later * unit_;
-            v = belt_of(i, {t, Side::at, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
+            t = mechanics_.next_break(at.t) <= soon ? at.t : soon;
+            v = belt_of(i, {t, at.side, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
         }
     }
-    if (t > at.t && mechanics_.next_break(at.t) <= t) t = at.t;
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
@@ -180,24 +180,36 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     forgotten_ = false;
 }
 
+/// Returns how far the margins change if the time changes by `later`, and each variable of the state by a few ulps and
+/// by its entry in `more`, which may be empty.
+std::vector<double> Conditions::rounding_of(const Piecewise& function, const Moment& at,
+                                            const std::vector<double>& margins, double later,
+                                            const std::vector<double>& more) const {
+    std::vector<double> rounded(margins.size(), 0), beside, y(at.y.begin(), at.y.end());
+    const auto add = [&](double t) {
+        function.margins({t, at.side, y}, beside);
+        for (std::size_t c = 0; c < margins.size(); ++c) {
+            const double change = std::fabs(beside[c] - margins[c]);
+            if (is_known(change)) rounded[c] += change;
+        }
+    };
+    for (std::size_t k = 0; k < told_; ++k) {
+        y[k] = at.y[k] * (1 + 4 * rounding) + (more.empty() ? 0 : more[k]);
+        add(at.t);
+        y[k] = at.y[k];
+    }
+    add(at.t + later);
+    return rounded;
+}
+
 /// Decides the conditions at this moment. Returns false if the margin of one that is asked may be zero by rounding.
 bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked) {
     if (function.is_friction() || function.is_spring() || function.slides()) return false;
     function.decide(at, asked);
-    std::vector<double> margins, beside, y(at.y.begin(), at.y.end());
+    std::vector<double> margins;
     function.margins(at, margins);
-    std::vector<double> rounded(margins.size(), 0);
-    constexpr double ulps = 1 + 4 * rounding;
-    const auto round = [&](double t) {
-        function.margins({t, at.side, y}, beside);
-        for (std::size_t c = 0; c < margins.size(); ++c) rounded[c] += std::fabs(beside[c] - margins[c]);
-    };
-    for (std::size_t k = 0; k < told_; ++k) {
-        y[k] *= ulps;
-        round(at.t);
-        y[k] = at.y[k];
-    }
-    round(at.t + 4 * rounding * (std::fabs(at.t) + unit_));
+    const std::vector<double> rounded =
+        rounding_of(function, at, margins, 4 * rounding * (std::fabs(at.t) + unit_), {});
     for (std::size_t c = 0; c < margins.size(); ++c) {
         const bool is_asked = (function.conditions()[c].of & asked) != 0;
         if (is_asked && !(std::fabs(margins[c]) > 16 * rounded[c])) return false;
@@ -253,12 +265,14 @@ bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
 void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
     ConditionSearch search(segment, ending.before());
     std::vector<double> y, margins;
+    const Moment start{segment.times[0], segment.side(0), begin};
     // A slide holds the motion but for rounding of the torques.
     const std::size_t n = mechanics_.bodies();
-    std::vector<double> held(begin.size(), 0);
+    std::vector<double> held;
     if (slides_.any()) {
         const double length = 2 * segment.h;
-        sizes_.find(mechanics_, segment, {segment.times[0], segment.side(0), begin});
+        held.assign(begin.size(), 0);
+        sizes_.find(mechanics_, segment, start);
         for (std::size_t i = 0; i < n; ++i) {
             held[n + i] = 64 * rounding * length * sizes_.on_body(i) / mechanics_.own_inertia(i);
             held[i] = length * held[n + i];
@@ -273,22 +287,9 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             for (std::size_t c = 0; c < count; ++c) values[c][j] = margins[c];
         }
         // A change of the margin caused by a few ulps of the motion or of the time counts as rounding.
-        constexpr double ulps = 1 + 4 * rounding;
-        std::vector<double> rounded(count, 0);
-        y = begin;
-        const auto round = [&](double t) {
-            function.margins({t, segment.side(0), y}, margins);
-            for (std::size_t c = 0; c < count; ++c) {
-                const double change = std::fabs(margins[c] - values[c][0]);
-                if (is_known(change)) rounded[c] += change;
-            }
-        };
-        for (std::size_t k = 0; k < told_; ++k) {
-            y[k] = begin[k] * ulps + held[k];
-            round(segment.times[0]);
-            y[k] = begin[k];
-        }
-        round(segment.times[0] * ulps);
+        std::vector<double> first(count);
+        for (std::size_t c = 0; c < count; ++c) first[c] = values[c][0];
+        std::vector<double> rounded = rounding_of(function, start, first, 4 * rounding * start.t, held);
         // The margin of a condition that was just crossed may be as large as it was then, also on a shorter stretch.
         for (std::size_t c = 0; c < count && crossed_at_ == now; ++c) {
             const Last& last = last_of(function, function.conditions()[c].step);

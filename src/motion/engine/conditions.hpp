@@ -89,6 +89,9 @@ private:
     void let_go(double t);
     [[nodiscard]] double belt_of(std::size_t body, const Moment& at) const;
     [[nodiscard]] double least_slip(std::size_t body, const Moment& at) const;
+    [[nodiscard]] std::vector<double> rounding_of(const Piecewise& function, const Moment& at,
+                                                  const std::vector<double>& margins, double later,
+                                                  const std::vector<double>& more) const;
     [[nodiscard]] bool decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked);
     void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
