@@ -53,7 +53,7 @@ void Noise::pass(const Segment& s) {
     for (std::size_t k = 0; k < may_be_rough_.size(); ++k) {
         if (may_be_rough_[k] == 0) continue;
         floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
-        // What was found in a short pulse is not noise of the motion behind it.
+        // Noise that was found in a short pulse is none of the motion behind it.
         constexpr double much_longer = 16, far_below = 1.0 / 64;
         double& noise = floor_.noise[k];
         if (!(noise > 0) || !(s.h > much_longer * found_on_[k])) continue;
@@ -73,88 +73,85 @@ double Noise::clear(double tolerance) const {
 
 bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes,
                   Proofs& proofs) {
-    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
-    constexpr double of_numbers = 64 * rounding;
+    const Asked asked{s, mode, tolerance, sizes, proofs};
     std::vector<double> known;
-    const std::size_t n = mechanics_.bodies(), m = mechanics_.states();
     bool any = false;
-    std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(m);
-    const std::vector<double> noise_before = floor_.noise;
-    for (std::size_t i = 0; i < n + m; ++i) {
+    for (std::size_t i = 0; i < may_be_rough_.size(); ++i) {
         if (may_be_rough_[i] == 0) continue;
-        const double of_all = cheb::tail(cheb::fit(acting(s, i)));
-        const bool of_time = i < n && mechanics_.loads()[i].asks_functions() &&
-                             !mechanics_.loads()[i].asks_the_motion() &&
-                             2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
-        const Nodes& values = of_time ? s.driven[i] : acting(s, i);
-        const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
-        const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
-        const double size = i < n ? sizes[i] : greatest(values);
-        // When a motion decays, the rounding of the terms in its torques remains.
-        const double ever = std::max(greatest(values), floor_.greatest[i]);
-        const double most = of_time ? most_noise * size
-                            : i < n ? most_noise_of_motion * ever
-                                    : most_noise_of_rate * tolerance * ever;
-        double& noise = floor_.noise[i];
-        // A motion that leaves its rest is judged by the rounding of its torques.
-        if (!(tail > std::min(tolerance, few_roundings * rounding) * size)) continue;
-        // The motion may be negligible against the numbers that its functions calculate with.
-        const auto is_rounding = [&] {
-            if (known.empty()) known = proofs.roundings(s, mode);
-            return tail <= few_roundings * known[i] && noise < 2 * tail;
-        };
-        const auto here = [&](double t) {
-            s.state(s.start.until(t) / s.h - 1, y);
-            const Moment at{t, Side::at, y};
-            if (i >= n) {
-                mechanics_.rates(at, rates.data(), &mode);
-                return rates[i - n];
-            }
-            mechanics_.loads_of_time(t, Side::at, loads);
-            if (of_time) return loads[i];
-            for (std::size_t joint = 0; joint < belts.size(); ++joint)
-                belts[joint] = mechanics_.belt(joint, t, Side::at);
-            mechanics_.torques(at, mode, belts, loads, torques);
-            return torques[i];
-        };
-        const bool stalls = before.from == s.start.hi && s.h < 0.95 * before.h && tail > stays * before.tail;
-        // A function that is not a formula may calculate with numbers about 1, however small the motion is, and then
-        // rounds in steps of that size everywhere.
-        const auto is_hidden = [&] {
-            if (!stalls || tail > of_numbers || noise >= 2 * tail) return false;
-            return tail <= rounding ||
-                   roughness(here, {s.time(-0.9), s.time(-0.2), s.time(0.5)}, 0.4 * s.h).usual > alike * tail;
-        };
-        if (!(tail <= most)) {
-            if (is_rounding()) {
-                noise = std::max(2 * tail, known[i]), any = true;
-            } else if (is_hidden()) {
-                noise = above * tail, any = true;
-            }
-            continue;
-        }
-        if (noise > 0 && 2 * tail <= noise) continue;
-        if (!stalls) continue;  // otherwise a stretch that is only too long would raise the noise again and again
-        if (noise > 0 && tail <= varies * noise) {
-            noise = 2 * tail, any = true;
-            continue;
-        }
-        // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
-        // like the greatest value so far.
-        if (tail <= rounding * ever || is_rounding()) {
-            noise = std::max(2 * tail, known.empty() ? 0 : known[i]), any = true;
-            continue;
-        }
-        const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
-        if (!(rough.usual > alike * tail)) continue;
-        noise = above * std::max(tail, rough.most);
+        const auto noise = measured(i, asked, known);
+        if (!noise) continue;
+        floor_.noise[i] = *noise, found_on_[i] = s.h, tolerated_[i] = std::max(tolerated_[i], *noise);
         any = true;
     }
-    for (std::size_t i = 0; i < n + m; ++i) {
-        if (floor_.noise[i] != noise_before[i]) found_on_[i] = s.h;
-        tolerated_[i] = std::max(tolerated_[i], floor_.noise[i]);
-    }
     return any;
+}
+
+/// Returns the torque on a body, or its load alone if `of_time`, or the rate of a state.
+double Noise::value(std::size_t of, bool of_time, const Asked& asked, double t) const {
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(mechanics_.states());
+    asked.segment.state(asked.segment.start.until(t) / asked.segment.h - 1, y);
+    const Moment at{t, Side::at, y};
+    if (of >= n) {
+        mechanics_.rates(at, rates.data(), &asked.mode);
+        return rates[of - n];
+    }
+    mechanics_.loads_of_time(t, Side::at, loads);
+    if (of_time) return loads[of];
+    for (std::size_t joint = 0; joint < belts.size(); ++joint) belts[joint] = mechanics_.belt(joint, t, Side::at);
+    mechanics_.torques(at, asked.mode, belts, loads, torques);
+    return torques[of];
+}
+
+/// Returns the noise of a body's torque or a state's rate if the stretch shows more than is known. `known` receives the
+/// rounding of formulas when it is first needed.
+std::optional<double> Noise::measured(std::size_t i, const Asked& asked, std::vector<double>& known) {
+    constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
+    constexpr double of_numbers = 64 * rounding;
+    const Segment& s = asked.segment;
+    const std::size_t n = mechanics_.bodies();
+    const double of_all = cheb::tail(cheb::fit(acting(s, i)));
+    const bool of_time = i < n && mechanics_.loads()[i].asks_functions() && !mechanics_.loads()[i].asks_the_motion() &&
+                         2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
+    const Nodes& values = of_time ? s.driven[i] : acting(s, i);
+    const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
+    const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
+    const double size = i < n ? asked.sizes[i] : greatest(values);
+    // When a motion decays, the rounding of the terms in its torques remains.
+    const double ever = std::max(greatest(values), floor_.greatest[i]);
+    const double most = of_time ? most_noise * size
+                        : i < n ? most_noise_of_motion * ever
+                                : most_noise_of_rate * asked.tolerance * ever;
+    const double noise = floor_.noise[i];
+    // A motion that leaves its rest is judged by the rounding of its torques.
+    if (!(tail > std::min(asked.tolerance, few_roundings * rounding) * size)) return {};
+    // The motion may be negligible against the numbers that its functions calculate with.
+    const auto is_rounding = [&] {
+        if (known.empty()) known = asked.proofs.roundings(s, asked.mode);
+        return tail <= few_roundings * known[i] && noise < 2 * tail;
+    };
+    const auto here = [&](double t) { return value(i, of_time, asked, t); };
+    const bool stalls = before.from == s.start.hi && s.h < 0.95 * before.h && tail > stays * before.tail;
+    // A function that is not a formula may calculate with numbers about 1, however small the motion is, and then rounds
+    // in steps of that size everywhere.
+    const auto is_hidden = [&] {
+        if (!stalls || tail > of_numbers || noise >= 2 * tail) return false;
+        return tail <= rounding ||
+               roughness(here, {s.time(-0.9), s.time(-0.2), s.time(0.5)}, 0.4 * s.h).usual > alike * tail;
+    };
+    if (!(tail <= most)) {
+        if (is_rounding()) return std::max(2 * tail, known[i]);
+        return is_hidden() ? std::optional(above * tail) : std::nullopt;
+    }
+    if (noise > 0 && 2 * tail <= noise) return {};
+    if (!stalls) return {};  // otherwise a stretch that is only too long would raise the noise again and again
+    if (noise > 0 && tail <= varies * noise) return 2 * tail;
+    // Rounding also has steps, between which short stretches are smooth. A function that is not a formula may round
+    // like the greatest value so far.
+    if (tail <= rounding * ever || is_rounding()) return std::max(2 * tail, known.empty() ? 0 : known[i]);
+    const Roughness rough = roughness(here, {s.time(-0.9), s.time(0.1), s.time(0.8)}, rough_stretch * 2 * s.h);
+    if (!(rough.usual > alike * tail)) return {};
+    return above * std::max(tail, rough.most);
 }
 
 }  // namespace dinal::motion::engine

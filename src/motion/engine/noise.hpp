@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "motion/engine/mechanics.hpp"
@@ -65,6 +66,16 @@ private:
         const std::size_t n = mechanics_.bodies();
         return of < n ? segment.torques[of] : segment.f[n + of];
     }
+    /// An unresolved stretch, and what is known of it.
+    struct Asked {
+        const Segment& segment;
+        const Mode& mode;
+        double tolerance;
+        const std::vector<double>& sizes;
+        Proofs& proofs;
+    };
+    [[nodiscard]] double value(std::size_t of, bool of_time, const Asked& asked, double t) const;
+    [[nodiscard]] std::optional<double> measured(std::size_t i, const Asked& asked, std::vector<double>& known);
     struct Stalled {
         double from = -model::never, h = 0, tail = 0;
     };
