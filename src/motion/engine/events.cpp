@@ -54,10 +54,7 @@ bool Engine::cross(const Ending& ending) {
     result_.jumps += crossed.count;
     // A motion that crosses a condition again and again does so at similar intervals.
     constexpr double few = 2;
-    if (crossed.since < model::never) {
-        const double half = few * crossed.since;
-        if (half < pace_.h) pace_.make_again(half, pace_.h);
-    }
+    if (const double half = few * crossed.since; half < pace_.h) pace_.make_again(half, pace_.h);
     if (crossed.work != 0)
         recorder_->add_jump(now_.t.hi, crossed.changes.slides.front().joint.value_or(0), {.input = crossed.work});
     for (const SlideChange& change : crossed.changes.slides) recorder_->tell_slide(now_, change);
@@ -71,7 +68,7 @@ bool Engine::cross(const Ending& ending) {
         return restart_contacts(Because::impact);
     }
     if (!goes_on) return fail(Outcome::chattering);
-    // Where no function jumps, contacts stay as they are.
+    // Contacts stay as they are if no function jumps.
     return crossed.jumps || !crossed.changes.slides.empty() ? decide(true) : true;
 }
 

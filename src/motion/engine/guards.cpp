@@ -301,9 +301,11 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
 /// Watches an elastic wall, which pushes while depth and torque are both positive. The depth becomes positive first,
 /// except when a wall was left while still deformed: then the torque does.
 void Guards::watch_stop(std::size_t joint) {
-    if (!joint_at(joint).stops || of_.conditions.slides().keep_slip(joint, frame_, segment_.moment(0, point_))) return;
+    if (!joint_at(joint).stops) return;
+    const Moment first = segment_.moment(0, point_);
+    if (of_.conditions.slides().keep_slip(joint, frame_, first)) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
-    const double begin = mechanics_.angle(joint, segment_.moment(0, point_).y);
+    const double begin = mechanics_.angle(joint, first.y);
     const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
     if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops);

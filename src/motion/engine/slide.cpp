@@ -20,9 +20,8 @@ constexpr double near = 1e-9;
 constexpr double clearly_apart = 1e-12;  // relative to the difference between both sides
 constexpr double way_back = 4;           // rate at which the motion returns to the surface, in the same units
 
-constexpr double short_passage = 1e-5;  // of a place, in time units of the motion
-
-constexpr double hardly = 1e-9;  // a part of a rate that does not count
+constexpr double short_passage = 1e-5;  // of a place, in the same units
+constexpr double hardly = 1e-9;         // a part of a rate that does not count
 
 /// Solves for the shares with which several slides stay on their surfaces. A row has the changes of the rate of one
 /// margin by each share, and then this rate with shares 0. Where contacts hold a surface, no load moves the motion off
@@ -253,7 +252,8 @@ bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, 
     for (std::size_t i = 1; i < slopes.size(); ++i) {
         const double slope = std::fabs(slopes[i]);
         if (i >= first && i < first + n) {
-            rounded += slope * 64 * rounding * std::fabs(of.jump) / mechanics_.own_inertia(i - first);
+            const double acceleration = std::fabs(of.jump) / mechanics_.own_inertia(i - first);
+            rounded += slope * 64 * rounding * acceleration * (of.of_place ? unit_ : 1);
         } else if (slope != 0) {
             moves += slope * std::fabs(i <= n ? at.y[n + i - 1] : i <= 2 * n ? 1 : states[i - 1 - 2 * n]);
         }
@@ -308,8 +308,8 @@ void Slides::move_aside(const Sliding& of, double side, std::vector<double>& y) 
     }
 }
 
-/// Moves y off a place. If the motion there is slow, it leaves the place, so that functions of the velocity decide,
-/// too.
+/// Moves y off a place, to one side of it. A slow motion is made to leave on that side, so that functions of the
+/// velocity decide, too.
 void Slides::move_out(const Sliding& of, double side, std::vector<double>& y) const {
     constexpr double tiny = 1e-12;
     const model::Joint& joint = mechanics_.system().joints[*of.joint];
