@@ -85,7 +85,11 @@ private:
     void complete_rest(const motion::Run& run, bool stands);
     [[nodiscard]] bool grows_beside(const FullState& rest, double t) const;
     [[nodiscard]] bool is_moving(const FullState& now) const {
-        return now.y.segment(n(), n()).cwiseAbs().maxCoeff() > 1e-9 * largest_;
+        return now.y.segment(n(), n()).cwiseAbs().maxCoeff() > std::max(1e-9 * largest_, rounding_of(now));
+    }
+    /// Returns by how much a body may move that a load holds at a jump.
+    [[nodiscard]] double rounding_of(const FullState& now) const {
+        return 64 * motion::engine::rounding * std::max(largest_, now.y.head(n()).cwiseAbs().maxCoeff());
     }
 
     const SteadyQuestion& question() const { return runs_.question(); }
@@ -438,9 +442,11 @@ bool ReturnSearch::rests(const motion::Run& run, const VectorXd& range, const Ve
     const bool stands = run.outcome == model::Outcome::at_rest ||
                         (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
     bool still = true, still_states = true;
+    const auto& y = run.left->carry->y;
+    const double rounded = rounding_of(Runs::at_stop(run));
     for (Index k = 0; k < range.size(); ++k) {
-        const double size = std::max(most_changed[k], std::fabs(run.left->carry->y[static_cast<std::size_t>(k)]));
-        const bool own = !chart_.measures(k) || range[k] <= 1e-11 * size;
+        const double size = std::max(most_changed[k], std::fabs(y[static_cast<std::size_t>(k)]));
+        const bool own = !chart_.measures(k) || range[k] <= std::max(1e-11 * size, k < 2 * n() ? rounded : 0);
         still = still && own;
         if (k >= 2 * n()) still_states = still_states && own;
     }

@@ -218,6 +218,10 @@ public:
                     say("Nothing moves: over a period M never exceeds what friction can hold.");
                     break;
                 }
+                if (motion_.rest.first == motion_.rest.second) {
+                    say("The mass stays at rest at theta = {}: M does not move it.", number(motion_.rest.first));
+                    break;
+                }
                 say("The mass adheres: over a period M never exceeds what friction can hold, so it stays where it "
                     "is, anywhere from theta = {} to {}.",
                     number(motion_.rest.first), number(motion_.rest.second));
@@ -364,7 +368,10 @@ private:
     }
     void tell_other(const SteadyMotion& other) {
         if (other.stands()) {
-            say("From another start the mass comes to rest.");
+            const std::string place = several() ? "" : " at theta = " + number(other.low);
+            other.stable
+                ? say("From another start {} to rest{}.", several() ? "all bodies come" : "the mass comes", place)
+                : say("There is also a rest{}, which is unstable.", place);
         } else if (other.status == SteadyStatus::grows) {
             say("From another start the motion grows.");
         } else if (timeless_) {

@@ -242,6 +242,8 @@ std::string steady_summary(lua_State*, const SteadyHandle& handle) {
                                number(m.amplitude, in.theta), text::counted(m.stops, "stop"),
                                m.stable || !m.differentiable ? "" : ", unstable");
         case SteadyStatus::adheres:
+            if (m.rest.first == m.rest.second)
+                return fmt::format("adheres: rests at theta = {}", number(m.rest.first, in.theta));
             return fmt::format("adheres: rests anywhere from theta = {:.6g} to {}", m.rest.first,
                                number(m.rest.second, in.theta));
         case SteadyStatus::rest:

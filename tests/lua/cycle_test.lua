@@ -134,7 +134,7 @@ test("a cycle and the rest beside it are reported as each other's only others", 
     end
     near(squeal.others[1].mean, 0.075, 1e-9)
     near(slides.others[1].period, squeal.period, 1e-9)
-    says(squeal, "From another start the mass comes to rest.")
+    says(squeal, "From another start the mass comes to rest at theta = 0.075.")
     says(slides, "Another start leads to another motion: amplitude")
     equal(system{ I = 1, k = 1 }:steady{ theta0 = 1 }.unique, false) -- one of a family
 end)

@@ -514,4 +514,22 @@ test("a load that hardly exceeds friction moves the mass a little twice a period
     end
 end)
 
+test("a body that a feedback holds at a jump rests, and a load that does nothing leaves a body where it is", function()
+    local function hold(t, theta, velocity) return .2 * velocity - .5 * (velocity > 0 and 1 or velocity < 0 and -1 or 0) end
+    local s = system { I = 1, k = 1 }:steady { M = hold, theta0 = .1 }
+    equal(s.status, "rest")
+    near(s.rest.lower, .1, 1e-13)
+    equal(s.stable, true)
+    assert(s:explain():gsub("%s+", " "):find("From another start the mass comes to rest at theta = ", 1, true))
+    local named = system { bodies = { a = { I = 1, k = 1 } } }
+        :steady { M = { a = function(t, theta, velocity) return hold(t, theta.a, velocity.a) end }, theta0 = { a = .1 } }
+    equal(named.status, "rest")
+    -- It pushes only what moves, and nothing disturbs the rest at 0.
+    local idle = system { I = 1, k = 1 }:steady { M = excitation.sampled(function(_, _, v) return .3 * v end, { every = .1 }) }
+    assert(idle:explain():find("The mass stays at rest at theta = 0: M does not move it.", 1, true), idle:explain())
+    equal(tostring(idle):match "rests.*", "rests at theta = 0")
+    local cycle = system { I = 1, k = 1 }:steady { M = function(_, x, v) return .2 * (1 - x^2) * v end, theta0 = .5 }
+    assert(cycle:explain():gsub("%s+", " "):find("There is also a rest at theta = 0, which is unstable.", 1, true))
+end)
+
 finish()

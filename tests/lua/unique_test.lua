@@ -81,7 +81,7 @@ test("other starts find motions far larger than the one found, and adhesion", fu
     local s = held:steady{ M = excitation.harmonic{ omega = 1 }, theta0 = 5 }
     equal(s.status, "steady")
     equal(s.unique, false)
-    says(s, "From another start the mass comes to rest.")
+    says(s, "From another start the mass comes to rest at theta = 0.")
 end)
 
 finish()
