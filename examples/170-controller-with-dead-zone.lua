@@ -46,7 +46,7 @@ for _, case in ipairs{ { 0, 0 }, { 0.05, 0 }, { 0.05, 1 } } do
     if event.kind == "turn" then turns = turns + 1 end
     if event.kind == "stick" then rest = event end
   end
-  print(string.format("%7.2f %16.1f %7d %12.3f %+7.3f   %s", lead, slope, turns, rest and rest.t or run.t[#run],
+  print(string.format("%7.2f %16.1f %7d %12.1f %+7.3f   %s", lead, slope, turns, rest and rest.t or run.t[#run],
     (target - run.theta[#run]) / degree, run.outcome))
 end
 -- Blind to the velocity, only friction stops it. Looking ahead with a bare switch it slides along the edge of what it
@@ -61,7 +61,7 @@ zone, degrees   turns   stuck from, s   off by   at most   (degrees)
             5       2        0.860228   +4.826     5.717
 
 lead, s   slope, degrees   turns   ends at, s  off by   outcome
-   0.00              0.0      12        3.336  -1.171   stuck at the end
-   0.05              0.0       1        2.500  +2.000   stuck at the end
-   0.05              1.0       1        0.616  +2.046   stuck at the end
+   0.00              0.0      12          3.3  -1.171   stuck at the end
+   0.05              0.0       1          2.5  +2.000   stuck at the end
+   0.05              1.0       1          0.6  +2.046   stuck at the end
 ]]

@@ -91,6 +91,7 @@ void Engine::choose(const Frame& frame) {
     segment_.to_break = to_limit && limit == breaks;
     segment_.to_the_end = to_limit;
     segment_.may_grow = pace_.h < frame.longest / 2;
+    segment_.slides = conditions_->slides().any();
 }
 
 /// Returns the time to the next wall under constant accelerations.

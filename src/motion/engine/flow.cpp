@@ -336,19 +336,25 @@ double of_others(const std::vector<double>& by_others, std::size_t k) {
 
 }  // namespace
 
+double Flow::noise_of_torques(const Segment& s) const {
+    const double of_share = s.slides ? 16 * rounding * *std::max_element(sizes_.all.begin(), sizes_.all.end()) : 0;
+    return noise_.of_torques() + of_share;
+}
+
 /// The noise that acts on each group and state through the quantities it depends on, times h. Empty if there is no
 /// noise.
 std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
     const std::vector<double>& noise = noise_.floor().noise;
-    if (std::all_of(noise.begin(), noise.end(), [](double x) { return x == 0; })) return {};
+    const bool none = std::all_of(noise.begin(), noise.end(), [](double x) { return x == 0; });
+    if (none && !s.slides) return {};
     const Eigen::MatrixXd* const slopes = newton_.slopes(frame);
     if (slopes == nullptr) return {};
     std::vector<double> rough(count);
     Eigen::VectorXd off(static_cast<Eigen::Index>(count));
     for (std::size_t k = 0; k < count; ++k) {
         off(static_cast<Eigen::Index>(k)) =
-            s.h * (k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)]);
+            s.h * (k < groups ? noise_of_torques(s) / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)]);
     }
     const Eigen::MatrixXd by = slopes->rightCols(static_cast<Eigen::Index>(count)).cwiseAbs();
     const Eigen::VectorXd once = by * off, twice = once + s.h * (by * once);

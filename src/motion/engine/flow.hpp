@@ -51,6 +51,8 @@ public:
         return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
     [[nodiscard]] const Noise& noise() const { return noise_; }
+    /// Returns the noise of the torques on a stretch; the share of a load that slides has the rounding of all of them.
+    [[nodiscard]] double noise_of_torques(const Segment& segment) const;
     void know(const Floor& floor) { noise_.know(floor); }
     /// The possible error of a body's velocity at the end of a resolved stretch.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {

@@ -174,7 +174,7 @@ bool Engine::advance() {
     }
     SampledLoads sampled(mechanics_, segment_);
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
-                            solver_->noise().of_torques());
+                            solver_->noise_of_torques(segment_));
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
