@@ -89,18 +89,40 @@ bool Balances::find(const Moment& at, const Mode& mode, const Frame& frame, cons
     return good;
 }
 
-Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, const Nearby& there,
-                   std::vector<double>& y) {
-    constexpr double least = std::numeric_limits<double>::min();
+std::vector<double> slip_alone(const Mechanics& mechanics, Mode mode, std::size_t joint) {
+    const std::size_t n = mechanics.bodies();
+    mode.leans[joint] = 0;
+    mode.friction[joint] = {.way = model::Motion::forward};
+    const Frame frame(mechanics.system(), mode);
+    std::vector<double> of_group(frame.groups()), slip(n);
+    double lightness = 0;
+    for (const auto& [group, by] : frame.joints[joint]) {
+        of_group[group] += by / frame.inertia[group];
+        lightness += by * by / frame.inertia[group];
+    }
+    if (lightness == 0) {
+        for (const auto& [body, by] : mechanics.system().joints[joint].of) slip[body] = by;
+        return slip;
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        for (const auto& [group, by] : frame.bodies[i]) slip[i] += by * of_group[group] / lightness;
+    }
+    return slip;
+}
+
+Moment just_beside(const Moment& at, const std::vector<double>& slip, const Nearby& there, std::vector<double>& y) {
     y.assign(at.y.begin(), at.y.end());
     const auto move = [](double& value, double by, double amount) {
-        value += by * std::max({4 * rounding * std::fabs(value), amount, least});
+        if (by == 0) return;
+        constexpr double least = std::numeric_limits<double>::min();
+        value += std::copysign(std::max({4 * rounding * std::fabs(value), std::fabs(by) * amount, least}), by);
     };
-    for (const auto& [body, by] : mechanics.system().joints[joint].of) {
-        move(y[body], model::sign_of(there.side) * by, there.far);
-        move(y[mechanics.bodies() + body], model::sign_of(there.way) * by, there.speed);
+    for (std::size_t i = 0; i < slip.size(); ++i) {
+        move(y[i], model::sign_of(there.side) * slip[i], there.far);
+        move(y[slip.size() + i], model::sign_of(there.way) * slip[i], there.speed);
     }
-    return {at.t, at.side, y, true};
+    constexpr double clearly = 1e3;
+    return {at.t, at.side, y, true, there.speed > 0 ? clearly * there.speed : model::never};
 }
 
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,

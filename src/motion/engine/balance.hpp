@@ -71,10 +71,13 @@ struct Nearby {
     double far = 0, speed = 0;  ///< differences of angle and slip
 };
 
-/// Returns the moment of this nearby motion, at the smallest differences that survive rounding if they are smaller. `y`
-/// is storage for its state.
-Moment just_beside(const Mechanics& mechanics, const Moment& at, std::size_t joint, const Nearby& there,
-                   std::vector<double>& y);
+/// Returns the velocity of each body if this joint slips at speed 1 and all others hold. If these do not let it slip,
+/// only its own bodies move, by their weights.
+std::vector<double> slip_alone(const Mechanics& mechanics, Mode mode, std::size_t joint);
+
+/// Returns the moment of this nearby motion, at the smallest differences that survive rounding if they are smaller.
+/// `slip` is from slip_alone(); `y` is storage for its state.
+Moment just_beside(const Moment& at, const std::vector<double>& slip, const Nearby& there, std::vector<double>& y);
 
 /// Returns by how much the torque on a sticking joint exceeds the holding limit, and sets the direction of breakaway.
 /// Only the part of the pull that exceeds the errors of users' states counts, so that touching a limit is not a

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -61,6 +62,7 @@ private:
     Ways take_back();
     void settle_at_limit(std::size_t joint);
     void creep(std::size_t joint, Motion way, double pull);
+    std::array<double, 2> driven_back(std::size_t joint, const Balance& at_rest);
     bool box_of(const std::vector<std::size_t>& held, Box& box);
     bool decide_together();
     bool share_loops();
@@ -282,11 +284,11 @@ bool Decider::stands(std::size_t j) const {
 /// if a value is not finite.
 std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here) {
     BothSides both;
+    const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
-        const Moment at =
-            just_beside(mechanics_, here, j, {side, speed ? side : Motion::stuck, 0, speed.value_or(0)}, y);
+        const Moment at = just_beside(here, slip, {side, speed ? side : Motion::stuck, 0, speed.value_or(0)}, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
         (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
         Motion way = Motion::stuck;
@@ -432,7 +434,26 @@ void Decider::creep(std::size_t joint, Motion way, double pull) {
 struct Decider::Box {
     Eigen::MatrixXd G;
     Eigen::VectorXd slope, low, high;
+    std::vector<std::array<double, 2>> driven_back;  ///< by loads that jump at slip 0, forward and backward
 };
+
+/// Returns the torques with which loads that jump at slip 0 drive a joint back when it slips forward and backward.
+std::array<double, 2> Decider::driven_back(std::size_t j, const Balance& at_rest) {
+    std::array<double, 2> back{};
+    if (!by_.balances.has_feedback() || !now().rubs(j)) return back;
+    const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
+    std::vector<double> y;
+    for (const Motion side : {Motion::forward, Motion::backward}) {
+        Balance beside;
+        const Moment at = just_beside(now().here(), slip, {side, side, 0, std::numeric_limits<double>::min()}, y);
+        if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
+        double change = 0;
+        for (std::size_t i = 0; i < slip.size(); ++i) change += slip[i] * (at_rest.torques[i] - beside.torques[i]);
+        const double torque = model::sign_of(side) * change;
+        if (torque > clearly_jumps * size(j)) back[side == Motion::forward ? 0 : 1] = torque;
+    }
+    return back;
+}
 
 /// Sets up the problem for these joints, which stick in the present mode. Returns false if a value is not finite.
 bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
@@ -451,6 +472,8 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
         const double blunt = mode().friction[j].blunt;
         box.low(c) = -blunt - (sticks ? mechanics_.holding(j, Motion::forward, now().here()) : 0);
         box.high(c) = std::min(wall, blunt + (sticks ? mechanics_.holding(j, Motion::backward, now().here()) : 0));
+        box.driven_back.push_back(driven_back(j, found));
+        box.low(c) -= box.driven_back.back()[0], box.high(c) += box.driven_back.back()[1];
         if (mode().leans[j] > 0 || mode().rigid[j] != 0) box.low(c) = -wall;
         if (mode().leans[j] < 0 || mode().rigid[j] != 0) box.high(c) = wall;
         box.slope(c) = mode().leans[j] == 0 ? -now().belt_slopes[j].rate : 0;
@@ -497,10 +520,12 @@ bool Decider::decide_together() {
             if (!(std::fabs(rate(c)) > no_motion * box.G(c, c) * size(j))) continue;  // other joints hold it as well
             slips[k] = 1, grown = true;
             const Moment here = now().here();
-            if (mode().leans[j] <= 0) box.low(c) = room(c) - mechanics_.sliding(j, {.way = Motion::forward}, 0, here);
+            const auto [ahead, behind] = box.driven_back[k];
+            if (mode().leans[j] <= 0)
+                box.low(c) = room(c) - mechanics_.sliding(j, {.way = Motion::forward}, 0, here) - ahead;
             const bool one_way = joint_at(j).friction.law.is_one_way();
             if (mode().leans[j] >= 0 && !one_way)
-                box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here) - room(c);
+                box.high(c) = mechanics_.sliding(j, {.way = Motion::backward}, 0, here) - room(c) + behind;
         }
     }
     std::vector<std::size_t> gone;

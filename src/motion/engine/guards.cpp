@@ -186,6 +186,7 @@ void Guards::watch_release(std::size_t joint) {
     const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
     const double torques = of_.sizes.on(joint_at(joint));
+    const std::vector<double> slip = between ? slip_alone(mechanics_, now_.mode, joint) : std::vector<double>{};
     Nodes pull{};
     Series series = segment_.holding_series[joint];  // series of the pull
     for (std::size_t j = 0; j < node_count; ++j) pull[j] = -segment_.holding[joint][j], series[j] = -series[j];
@@ -200,9 +201,9 @@ void Guards::watch_release(std::size_t joint) {
         if (std::isinf(most[0])) continue;  // the backward side of a freewheel
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
-            return of_.balances.on_stretch(
-                segment_, x, between ? just_beside(mechanics_, at, joint, {side, side, 0, beside_zero}, beside) : at,
-                now_.mode, frame_, found);
+            return of_.balances.on_stretch(segment_, x,
+                                           between ? just_beside(at, slip, {side, side, 0, beside_zero}, beside) : at,
+                                           now_.mode, frame_, found);
         };
         if (between) {
             for (std::size_t j = 0; j < node_count; ++j) {

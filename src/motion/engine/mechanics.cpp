@@ -368,7 +368,11 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const auto* spring = joint.spring.as<model::springs::UserSpring>();
         if (spring != nullptr && spring->function->has_pieces()) {
             const auto turned = [this, j](const Moment& at) { return angle(j, at.y); };
-            contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, true});
+            const auto speed = [this, j](const Moment& at) {
+                const double v = std::fabs(velocity(j, at.y));
+                return v > 16 * rounding * speed_scale(j, at.y) ? v : 0;
+            };
+            contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, speed});
         }
         contact.bristle = friction.bending();
         const bool bends = contact.bristle != nullptr;

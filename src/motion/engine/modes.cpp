@@ -254,10 +254,11 @@ private:
             const double limit = mechanics_.holding(j, held[j] < 0 ? Motion::forward : Motion::backward, here(y_));
             if (std::fabs(held[j]) <= limit * (1 + 1e-9)) continue;
             // A load or spring that jumps here and drives the joint back may hold it with any value in between.
+            const std::vector<double> slip = slip_alone(mechanics_, mode_, j);
             std::array<double, 2> beside{};
             for (const Motion side : {Motion::backward, Motion::forward}) {
                 std::vector<double> y;
-                static_cast<void>(just_beside(mechanics_, here(y_), j, {side, Motion::stuck}, y));
+                static_cast<void>(just_beside(here(y_), slip, {side, Motion::stuck}, y));
                 beside[side == Motion::forward ? 1 : 0] = held_at(y)[j];
             }
             if (beside[0] < beside[1] && beside[0] <= limit && beside[1] >= -limit) continue;

@@ -60,7 +60,7 @@ std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const N
         Slipping& how = mode.friction[joint];
         how.way = way, how.leaving = how.riding = false;
         std::vector<double> y;
-        const Moment at = just_beside(mechanics_, still.here(), joint, {side, way, far}, y);
+        const Moment at = just_beside(still.here(), slip_alone(mechanics_, mode, joint), {side, way, far}, y);
         Balance found;
         const bool good = balances_->at_present(at, still, mode, Frame(problem_.system, mode), segment_, found);
         return good ? -model::sign_of(side) * joint_at(joint).sum(found.accelerations) : 0;

@@ -41,7 +41,8 @@ struct Moment {
     double t;
     Side side;
     std::span<const double> y;
-    bool freely = false;  ///< whether functions that do not slide are evaluated directly, not on their pieces
+    bool freely = false;         ///< whether functions that do not slide are evaluated directly, not on their pieces
+    double slow = model::never;  ///< springs are so only at joints no faster than this: others pass a jump anyway
 };
 
 /// The calling convention of user functions.
@@ -73,8 +74,10 @@ public:
     struct Law {
         bool alone;
         std::function<double(const Moment&)> slip;
-        double way = 0;         ///< 0 if its joint does not slide
-        bool of_angle = false;  ///< whether it is a spring, whose argument may have any sign
+        double way = 0;  ///< 0 if its joint does not slide
+        /// The speed of the joint of a spring, whose argument is an angle of any sign; empty: a friction law.
+        std::function<double(const Moment&)> speed = {};
+        [[nodiscard]] bool of_angle() const { return speed != nullptr; }
     };
     Piecewise(const Asking* asking, model::UserFunction* function, Law law) : Piecewise(asking, function, 0) {
         law_ = std::move(law);
@@ -99,8 +102,8 @@ public:
     };
 
     bool has_pieces() const { return has_pieces_; }
-    bool is_friction() const { return law_ && !law_->of_angle; }
-    bool is_spring() const { return law_ && law_->of_angle; }
+    bool is_friction() const { return law_ && !law_->of_angle(); }
+    bool is_spring() const { return law_ && law_->of_angle(); }
     bool is_held() const { return piece_.owner != nullptr; }
     /// The next time at which the formula changes.
     double next_break(double t) const { return law_ && law_->alone ? model::never : function_->next_break(t); }
@@ -113,7 +116,8 @@ public:
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
     double value(const Moment& at, double speed) const {
         return called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
-            const bool on_piece = is_held() && (law_->of_angle ? !at.freely : speed != 0);
+            const bool freely = law_->of_angle() ? at.freely && !(law_->speed(at) > at.slow) : speed == 0;
+            const bool on_piece = is_held() && !freely;
             return on_piece ? function_->value_on(piece_, t, state, states, nullptr)
                             : function_->value_with(t, state, states);
         });
@@ -129,7 +133,7 @@ public:
         crossed_ = false;
         // A joint about to slip counts as moving already.
         const double given = argument(at);
-        const double speed = law_ && !law_->of_angle ? std::max(given, std::numeric_limits<double>::min()) : given;
+        const double speed = law_ && !law_->of_angle() ? std::max(given, std::numeric_limits<double>::min()) : given;
         called(at, speed, [&](double t, const model::State& state, std::span<const double> states) {
             function_->decide(piece_, t, state, states, again);
         });
