@@ -569,4 +569,57 @@ test("a feedback that changes just beside a body at rest is decided where the bo
     near(run.theta[#run.t], 0, 1e-11)
 end)
 
+test("feedbacks of several bodies move a machine as dry friction does", function()
+    local damped, light = { I = 2, k = 0.2, C = 2 }, { I = 0.5, k = 2, C = 1, Rd = 0.2 }
+    -- each: bodies, links, the feedbacks of bodies, other loads, start
+    for i, case in ipairs {
+        -- a clutch holds two bodies together that both have one
+        { { a = { I = 2, k = 0, C = 0.5, Rd = 0.2 }, b = damped }, { l = { "a", "b", k = 2, Rd = 1 } }, { a = 2, b = 1 },
+            { a = math.sin, b = function(t) return 2 * math.sin(t) end }, { velocity0 = { b = 0.2 } } },
+        -- rounding of what is held moves nothing else
+        { { a = light, b = { I = 1, k = 0.5, C = 1 }, c = { I = 2, k = 2, C = 2 } },
+            { l = { "a", "b", k = 0.2, Rd = 0.1 }, m = { "b", "c", k = 1 } }, { b = 1 },
+            { b = function(t) return 0.5 * math.sin(t) end }, { theta0 = { a = -0.1 }, velocity0 = { a = 0.2 } } },
+        -- the preload of a link reverses, and pulls off the body that its feedback has held
+        { { a = { I = 0.5, k = 0, Rd = 0.5, walls = { lower = -0.1, restitution = 1 } }, b = { I = 0.5, k = 0.5, Rd = 0.5 } },
+            { l = { "a", "b", Rd = 0.1, spring = function(x) return 2 * sgn(x) end } }, { b = 2 },
+            { b = function(t) return 0.5 * math.sin(t) end }, { theta0 = { a = 0.1 }, velocity0 = { a = 0.5 } } },
+        -- the same, from a start right at the reversal
+        { { a = { I = 2, k = 0, C = 0.5, Rd = 0.2 }, b = damped },
+            { l = { "a", "b", k = 2, Rd = 1, spring = function(x) return 2 * sgn(x) end } }, { a = 2 }, { a = math.sin },
+            { velocity0 = { b = 0.2 } } },
+        -- a stop presses one body against another that its feedback holds
+        { { a = { I = 0.5, k = 1, C = 2, Rd = 0.2 }, b = { I = 2, k = 0.1, C = 2, Rd = 0.1 } },
+            { l = { "a", "b", k = 0.1, C = 1, walls = { lower = -0.2, upper = 0.2, restitution = 0.5 } } }, { b = 2 },
+            { a = function(t) return math.min(t, 2) end }, { theta0 = { a = 0.05, b = 0.1 }, velocity0 = { b = 0.5 } } },
+    } do
+        local bodies, links, most, loads, task = table.unpack(case)
+        local dry, M = {}, {}
+        for name, body in pairs(bodies) do
+            local own, A = loads[name] or function() return 0 end, most[name] or 0
+            dry[name] = merged(body, { Rd = (body.Rd or 0) + A })
+            M[name] = function(t, _, v) return own(t) - A * sgn(v[name]) end
+        end
+        local run = system { bodies = bodies, links = links }:simulate(merged(task, { M = M, t_end = 20 }))
+        local truth = system { bodies = dry, links = links }:simulate(merged(task, { M = loads, t_end = 20 }))
+        equal(run.status, truth.status, i)
+        for _, name in ipairs(truth.names) do
+            if name:find "theta" or name:find "velocity" then near(run:column(name), truth:column(name), 1e-11) end
+        end
+        if i == 2 then equal(#run.events, #truth.events) end
+    end
+end)
+
+test("a place to which a load drives a body back holds it also where a link's preload reverses", function()
+    local a = { I = 2, k = 0.5, C = 0.5, Rd = 0.2, Re = 0.7 }
+    local alone = system(a):simulate { M = function(_, x) return -2.1 * sgn(x) end, theta0 = 0.1, t_end = 20 }
+    -- The preload acts between it and a body that stays at 0.
+    local run = system {
+        bodies = { a = a, b = { I = 0.5, k = 2, C = 0.5, Rd = 0.5, Re = 0.7 } },
+        links = { l = { "a", "b", spring = function(x) return 0.1 * sgn(x) end } },
+    }:simulate { M = { a = function(_, x) return -2 * sgn(x.a) end }, theta0 = { a = 0.1 }, t_end = 20 }
+    equal(run.status, "stuck")
+    near(run.a.theta, alone.theta, 1e-12)
+end)
+
 finish()

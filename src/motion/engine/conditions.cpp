@@ -25,17 +25,17 @@ public:
         /// whether its margin at the start exceeds the rounding there, but not the rounding over the stretch
         bool blurred;
     };
-    ConditionSearch(const Segment& segment, double before)
-        : segment_(segment), before_(before), earliest_(std::min(1.0, before)) {}
+    /// A condition, its margins at the nodes, their change caused by rounding, and where the stretch ends otherwise.
+    struct Margin {
+        Piecewise* function;
+        std::size_t condition;
+        Nodes values;
+        double rounded, before;
+    };
+    explicit ConditionSearch(const Segment& segment) : segment_(segment) {}
 
-    /// Watches the conditions of a function, given the margins at the nodes. `rounded` is the change of each margin
-    /// caused by rounding.
-    void watch(Piecewise& function, const std::vector<Nodes>& values, const std::vector<double>& rounded) {
-        for (std::size_t c = 0; c < values.size(); ++c) {
-            if (!watch(function, c, values[c], rounded[c], {})) {
-                not_finite_.push_back({&function, c, values[c], rounded[c]});
-            }
-        }
+    void watch(const Margin& margin) {
+        if (!watch(margin, {})) not_finite_.push_back(margin);
     }
     /// Watches the conditions whose margin is not finite everywhere. The formula of a piece may have no value beyond
     /// its ends, such as the root of a former |theta|. Such a condition is watched up to the next crossing of another
@@ -49,29 +49,24 @@ private:
         double first = -1, last = 1;
         double place(double x) const { return first + (x + 1) * (last - first) / 2; }
     };
-    struct Unknown {
-        Piecewise* function;
-        std::size_t condition;
-        Nodes values;
-        double rounded;
-    };
-    bool watch(Piecewise& function, std::size_t c, Nodes values, double rounded, Part part);
+    bool watch(Margin margin, Part part);
 
     const Segment& segment_;
-    double before_, earliest_;
+    double earliest_ = 1;
     std::vector<Crossing> crossings_;
-    std::vector<Unknown> not_finite_;
+    std::vector<Margin> not_finite_;
     std::vector<double> y_, margins_;
 };
 
 /// Returns false if the margin is not finite everywhere in this part.
-bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, double rounded, Part part) {
+bool ConditionSearch::watch(Margin margin, Part part) {
+    auto& [function, c, values, rounded, before] = margin;
     const bool whole = part.first == -1 && part.last == 1;
     const auto exact = [&](double x) {
         const double at = whole ? x : part.place(x);
         segment_.state(at, y_);
-        function.margins({segment_.time(at), Side::at, y_}, margins_);
-        return margins_[c];
+        margin.function->margins({segment_.time(at), Side::at, y_}, margins_);
+        return margins_[margin.condition];
     };
     if (!whole) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
     if (!std::all_of(values.begin(), values.end(), is_known)) return false;
@@ -83,8 +78,8 @@ bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, do
     Half half = 1;
     auto x = is_back ? std::optional(-1.0) : Watched(values, exact, rounded).leaves(half, -1);
     if (x && !whole) x = part.place(*x);
-    if (x && *x < before_) {
-        crossings_.push_back({*x, &function, c, within, whole && values[0] > 16 * rounded});
+    if (x && *x < before) {
+        crossings_.push_back({*x, function, c, within, whole && values[0] > 16 * rounded});
         earliest_ = std::min(earliest_, *x);
     }
     return true;
@@ -92,17 +87,17 @@ bool ConditionSearch::watch(Piecewise& function, std::size_t c, Nodes values, do
 
 void ConditionSearch::watch_not_finite() {
     const double end_of_others = earliest_;
-    for (const Unknown& u : not_finite_) {
+    for (const Margin& u : not_finite_) {
         constexpr double within = 1e-12;
         const auto* const begin = u.values.begin() + (is_known(u.values[0]) ? 0 : 1);
         const auto* const bad = std::find_if_not(begin, u.values.end(), is_known);
         if (bad == begin) continue;
         const double first = begin == u.values.begin() ? -1 : -1 + within;
         const double known = cheb::nodes[static_cast<std::size_t>(bad - u.values.begin()) - 1];
-        const double last = std::min(end_of_others - within, 1.0);
+        const double last = std::min({end_of_others - within, u.before, 1.0});
         if (!(last > first)) continue;
-        if (watch(*u.function, u.condition, u.values, u.rounded, {first, last}) || known >= last) continue;
-        watch(*u.function, u.condition, u.values, u.rounded, {first, known});
+        if (watch(u, {first, last}) || known >= last) continue;
+        watch(u, {first, known});
     }
 }
 
@@ -263,7 +258,9 @@ bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
 }
 
 void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
-    ConditionSearch search(segment, ending.before());
+    ConditionSearch search(segment);
+    // Loads that jump at a place which another body passes at the instant of a release decide about the release.
+    const double beside_release = ending.by == By::release ? ending.x + one_instant : ending.before();
     std::vector<double> y, margins;
     const Moment start{segment.times[0], segment.side(0), begin};
     // A slide holds the motion but for rounding of the torques.
@@ -295,7 +292,10 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
             const Last& last = last_of(function, function.conditions()[c].step);
             if (last.t == now) rounded[c] = std::max(rounded[c], last.within);
         }
-        search.watch(function, values, rounded);
+        for (std::size_t c = 0; c < count; ++c) {
+            const bool of_place = is_of_place(function, function.conditions()[c].of);
+            search.watch({&function, c, values[c], rounded[c], of_place ? beside_release : ending.before()});
+        }
     });
     search.watch_not_finite();
     if (search.crossings().empty()) return;
@@ -376,7 +376,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
             slides.insert(slides.end(), begun->changes.slides.begin(), begun->changes.slides.end());
             functions.insert(functions.end(), begun->changes.functions.begin(), begun->changes.functions.end());
             crossed.work = begun->work, chatter.crossed(false);
-        } else if (rather_soon_again) {
+        } else if (rather_soon_again && !(crossed.back && crossed.back->jump > jump)) {
             crossed.back = {function, condition, since, jump};
         }
     }
