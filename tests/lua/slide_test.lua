@@ -622,4 +622,43 @@ test("a place to which a load drives a body back holds it also where a link's pr
     near(run.a.theta, alone.theta, 1e-12)
 end)
 
+test("a feedback of the velocity acts beside a belt as dry friction on the ground, also where the belt reverses", function()
+    -- each: A, Rd, speed of the belt, its omega, k, I, C, theta0, velocity0, amplitude of M
+    for _, case in ipairs {
+        { 0.5, 0.2, 0.5, 2, 1, 2, 0, -0.5, 0, 1 }, { 0.1, 0.2, 0.5, 1, 0, 1, 0.1, 0.1, 0, 0.3 }, { 0.2, 0.1, 0.5, 2, 0.5, 0.5, 0.1, -0.5, 0, 0.3 },
+        { 0.2, 0.2, 0.5, 1, 1, 0.5, 0, 0, 0, 1 }, { 0.1, 0.5, 0.5, 1, 1, 2, 0.1, 0, 0, 0 }, { 0.5, 0.5, 0.2, 0.5, 0, 1, 0.1, 0.1, 0.2, 1 },
+    } do
+        local A, Rd, fast, omega, k, I, C, theta0, velocity0, amplitude = table.unpack(case)
+        local function belt(t) return fast * math.sin(omega * t) end
+        local run = system { I = I, k = k, C = C, Rd = Rd }:simulate {
+            M = function(t, _, v) return amplitude * math.sin(t) - A * sgn(v) end, belt = belt, theta0 = theta0, velocity0 = velocity0, t_end = 20,
+        }
+        local truth = system { bodies = { a = { I = I, k = k, C = C, Rd = Rd }, ground = { theta = 0 } }, links = { l = { "a", "ground", Rd = A } } }
+            :simulate {
+                M = { a = function(t) return amplitude * math.sin(t) end }, belt = { a = belt }, theta0 = { a = theta0 },
+                velocity0 = { a = velocity0 }, t_end = 20,
+            }
+        near(run.theta, truth.a.theta, 1e-11)
+    end
+end)
+
+test("a body tied by a preload to another one on a belt moves with it, past its own friction and stops", function()
+    local function tied(b, preload, load)
+        local run = system {
+            bodies = { a = { I = 0.5, k = 0.2, C = 2, Rd = 1 }, b = merged({ I = 2, k = 1, C = 1, Rd = 0.1 }, b) },
+            links = { l = { "a", "b", spring = function(x) return preload * sgn(x) end } },
+        }:simulate { M = { b = function() return load end }, theta0 = { a = 0.04, b = 0.04 }, belt = { a = function(t) return 0.2 * math.sin(t) end }, t_end = 20 }
+        near(run:energy().total.error, 0, 1e-10)
+        return run
+    end
+    for _, preload in ipairs { 1, 2 } do
+        for _, load in ipairs { 0, 0.5, 1 } do
+            local run = tied({}, preload, load)
+            local apart = (run.a.theta - run.b.theta):abs():max()
+            if preload == 2 and load < 1 then near(apart, 0, 1e-9) end
+        end
+        tied({ walls = { lower = -0.1, upper = 0.1, stiffness = 20, damping = 1 } }, preload, 0)
+    end
+end)
+
 finish()

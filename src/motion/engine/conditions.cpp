@@ -145,6 +145,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         for (std::size_t i = 0; i < n; ++i) y[i] += past_rounding * unit_ * y[n + i];
     }
     std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
+    bool starts_with_belt = false;
     standing_.resize(n);
     for (std::size_t i = 0; i < n; ++i) {
         const Slipping& how = mode.friction[i];
@@ -157,7 +158,10 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         if (leaves && std::fabs(v - belt_of(i, at)) <= least_slip(i, at)) {
             sizes_.find(mechanics_, last, at);
             const double size = sizes_.on(mechanics_.system().joints[i]);
-            const double speed = little_later * unit_ * size / mechanics_.system().bodies[i].inertia;
+            double rate = size / mechanics_.system().bodies[i].inertia;
+            starts_with_belt = starts_with_belt || mechanics_.has_belt(i);
+            if (mechanics_.has_belt(i)) rate = std::max(0.0, model::sign_of(how.way) * slides_.slip_rate(i, mode, at));
+            const double speed = little_later * unit_ * rate;
             t = mechanics_.next_break(at.t) <= soon ? at.t : soon;
             v = belt_of(i, {t, at.side, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
         }
@@ -168,7 +172,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const bool just_crossed = has_just_crossed(function, of_leaving, at.t);
         const bool known = !forgotten_ && slides_.just_left(function, at.t);
         const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
-        if (of_leaving != 0 && !forgotten_ && decide_clearly(function, at, asked)) return;
+        if (of_leaving != 0 && !forgotten_ && !starts_with_belt && decide_clearly(function, at, asked)) return;
         function.decide({t, at.side, y}, asked);
         if (asked != 0 && !forgotten_) decide_by_rate(function, at, asked);
     });

@@ -388,7 +388,7 @@ void Decider::report(std::size_t j) {
 /// joints held by belts of different velocities do slip.
 bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = joint_at(joint);
-    if (!frame.keeps(joint) && !by_.slides.keep_slip(joint, frame, now().here())) return false;
+    if (!frame.keeps(joint)) return by_.slides.keep_slip(joint, frame, now().here());
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;

@@ -129,6 +129,12 @@ std::vector<double> Slides::rates_at(const Moment& at) const {
     return rates;
 }
 
+double Slides::slip_rate(std::size_t joint, const Mode& mode, const Moment& at) {
+    mode_ = mode;
+    const std::vector<double> rates = rates_at({at.t, at.side, at.y, true});
+    return mechanics_.velocity(joint, rates) - belt_rate(joint, at);
+}
+
 /// Returns the margin of a slide with these rates of y.
 Slides::Side Slides::side_of(const Sliding& of, const Moment& at, std::vector<double> rates) const {
     Side side{.rates = std::move(rates)};
@@ -264,6 +270,10 @@ bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, 
 bool Slides::keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     if (sliding_.empty()) return false;
+    for (std::size_t j = 0; j < mechanics_.joints() && mechanics_.has_belts(); ++j) {
+        if (!mechanics_.has_belt(j) || (j != joint && !frame.keeps(j))) continue;
+        if (mechanics_.belt(j, at.t, at.side) != 0 || belt_rate(j, at) != 0) return false;
+    }
     const auto groups = static_cast<Eigen::Index>(frame.groups());
     Eigen::MatrixXd held = Eigen::MatrixXd::Zero(groups, static_cast<Eigen::Index>(sliding_.size()));
     for (std::size_t k = 0; k < sliding_.size(); ++k) {
