@@ -661,4 +661,35 @@ test("a body tied by a preload to another one on a belt moves with it, past its 
     end
 end)
 
+test("a load that holds a speed carries a body on: past a clutch that sticks to it, and into a stop", function()
+    local function cruise(t, v) return 0.1 * math.sin(t) - 0.7 * sgn(v - 0.1) end
+    local pair = system { bodies = { a = { I = 1, k = 0, Rd = 0.3 }, b = { I = 1, k = 0.2 } }, links = { l = { "a", "b", Rd = 0.1 } } }
+        :simulate { M = { a = function(t, _, v) return cruise(t, v.a) end }, velocity0 = { a = 0.2, b = 0.3 }, t_end = 3 }
+    near(pair.a.velocity[#pair.t], 0.1, 1e-14)
+    near(pair.b.velocity[#pair.t], 0.1, 1e-14)
+    near(pair:energy().total.error, 0, 1e-13)
+    local stopped = system { I = 1, k = 0, Rd = 0.3, walls = { upper = 0.3, stiffness = 50, damping = 1 } }
+        :simulate { M = function(t, _, v) return cruise(t, v) end, velocity0 = 0.2, t_end = 8 }
+    local begun, met = stopped.events[1], stopped.events[2]
+    equal(met.kind, "impact")
+    near(met.t, begun.t + (0.3 - begun.theta) / 0.1, 1e-13)
+    -- It presses with 0.8 - 0.3 at most, and its speed adds 0.1/sqrt(50).
+    assert(stopped.theta:max() < 0.33)
+end)
+
+test("a body that is held at a moving place turns with it, and does not stick where the place turns", function()
+    local run = system { I = 0.5, k = 1, C = 0.5, Rd = 0.5 }
+        :simulate { M = function(t, x) return -2 * sgn(x - 0.1 * math.sin(t)) end, theta0 = 0.1, t_end = 12 }
+    local held = run:filter(function(row) return row.t > 2 end)
+    near(held.theta, 0.1 * held.t:sin(), 1e-12)
+    -- What holds it: 0.5 x'' + 0.5 x' + x, and friction against its motion.
+    near(held.M, 0.05 * held.t:sin() + 0.05 * held.t:cos() + 0.5 * held.velocity:map(sgn), 1e-9)
+    local kinds = run.events:filter(function(event) return event.t > 2 end)
+    equal(#kinds, 3)
+    for i, event in ipairs(kinds) do
+        equal(event.kind, "turn")
+        near(event.t, (i + 0.5) * math.pi, 1e-7)
+    end
+end)
+
 finish()

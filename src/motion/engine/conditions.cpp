@@ -275,7 +275,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
         held.assign(begin.size(), 0);
         sizes_.find(mechanics_, segment, start);
         for (std::size_t i = 0; i < n; ++i) {
-            held[n + i] = 64 * rounding * length * sizes_.on_body(i) / mechanics_.own_inertia(i);
+            held[n + i] = 64 * rounding * length * sizes_.on_body(i) / mechanics_.system().bodies[i].inertia;
             held[i] = length * held[n + i];
         }
     }

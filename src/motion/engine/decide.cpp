@@ -388,7 +388,7 @@ void Decider::report(std::size_t j) {
 /// joints held by belts of different velocities do slip.
 bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = joint_at(joint);
-    if (!frame.keeps(joint)) return by_.slides.keep_slip(joint, frame, now().here());
+    if (!frame.keeps(joint)) return by_.slides.keep_slip(joint, mode(), frame, now().here());
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;
@@ -437,10 +437,11 @@ struct Decider::Box {
     std::vector<std::array<double, 2>> driven_back;  ///< by loads that jump at slip 0, forward and backward
 };
 
-/// Returns the torques with which loads that jump at slip 0 drive a joint back when it slips forward and backward.
+/// Returns the torques with which loads that jump at slip 0 drive a joint at standstill back when it slips forward and
+/// backward.
 std::array<double, 2> Decider::driven_back(std::size_t j, const Balance& at_rest) {
     std::array<double, 2> back{};
-    if (!by_.balances.has_feedback() || !now().rubs(j)) return back;
+    if (!by_.balances.has_feedback() || !now().rubs(j) || !stands(j)) return back;
     const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
     std::vector<double> y;
     for (const Motion side : {Motion::forward, Motion::backward}) {

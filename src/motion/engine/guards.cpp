@@ -304,7 +304,7 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
 void Guards::watch_stop(std::size_t joint) {
     if (!joint_at(joint).stops) return;
     const Moment first = segment_.moment(0, point_);
-    if (of_.conditions.slides().keep_slip(joint, frame_, first)) return;
+    if (of_.conditions.slides().keep_slip(joint, now_.mode, frame_, first)) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
     const double begin = mechanics_.angle(joint, first.y);
     const int pressed = now_.mode.presses[joint];

@@ -40,9 +40,11 @@ Engine::Settles Engine::settle(const Conditions::Crossed::Back& back) {
         passages->leg > shortest_passage * pace && std::fabs(speed) * passages->leg > clearly_seen * of_rounding * size;
     if (seen && passages->all > most_legs * passages->leg) return Settles::no;
     if (seen && passages->all > last_passages * pace) return Settles::soon;
-    recorder_->add_jump(now_.t.hi, joint, {.dry = speed * speed / thrown.lightness / 2});
+    const double energy = kinetic_energy(), lost = speed * speed / thrown.lightness / 2;
+    recorder_->add_jump(now_.t.hi, joint, {.dry = lost});
     const Motion way = model::motion_of(speed);
     now_.y = still.y, now_.low = still.low;
+    add_work_of_moved(joint, energy, lost);
     wait(passages->all);
     now_.mode.friction[joint].leaving = false;
     contacts_.of[joint].arrived = way;

@@ -248,38 +248,53 @@ std::size_t Slides::first_held(const Sliding& of) const {
     return of.of_place ? 1 : 1 + mechanics_.bodies();
 }
 
-/// Returns whether the surface of a slide does not move, but for rounding of the torques: whether nothing else in its
-/// margin, with these slopes, changes.
+/// Returns whether a slide holds no speed, and its surface does not move, but for rounding of the torques: whether
+/// nothing else in its margin, with these slopes, changes.
 bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, const Moment& at) const {
     const std::size_t n = mechanics_.bodies(), first = first_held(of);
     std::vector<double> states(mechanics_.states());
     if (!states.empty()) mechanics_.rates(at, states.data(), &mode_);
-    double moves = std::fabs(slopes[0]), rounded = 0;
+    // A place that turns back stands for an instant only.
+    const double later = std::min(1e-4 * unit_, (mechanics_.next_break(at.t) - at.t) / 2);
+    const double then = gradient(*of.function, {at.t + later, engine::Side::at, at.y})[0];
+    double moves = std::max(std::fabs(slopes[0]), std::fabs(then)), rounded = 0, speed = 0;
     for (std::size_t i = 1; i < slopes.size(); ++i) {
         const double slope = std::fabs(slopes[i]);
         if (i >= first && i < first + n) {
-            const double acceleration = std::fabs(of.jump) / mechanics_.own_inertia(i - first);
+            const double acceleration = std::fabs(of.jump) / mechanics_.system().bodies[i - first].inertia;
             rounded += slope * 64 * rounding * acceleration * (of.of_place ? unit_ : 1);
+            speed += of.of_place ? 0 : slopes[i] * at.y[i - 1];
         } else if (slope != 0) {
             moves += slope * std::fabs(i <= n ? at.y[n + i - 1] : i <= 2 * n ? 1 : states[i - 1 - 2 * n]);
         }
     }
-    return moves <= rounded;
+    return moves + std::fabs(speed) / unit_ <= rounded;
 }
 
-bool Slides::keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const {
+bool Slides::keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     if (sliding_.empty()) return false;
-    for (std::size_t j = 0; j < mechanics_.joints() && mechanics_.has_belts(); ++j) {
-        if (!mechanics_.has_belt(j) || (j != joint && !frame.keeps(j))) continue;
-        if (mechanics_.belt(j, at.t, at.side) != 0 || belt_rate(j, at) != 0) return false;
+    // What moving belts carry along: the speed of each body, and its rate.
+    std::vector<double> belts(mechanics_.joints()), rates(belts), carried(n), faster(n);
+    for (std::size_t j = 0; j < belts.size() && mechanics_.has_belts(); ++j) {
+        if (mechanics_.has_belt(j)) belts[j] = mechanics_.belt(j, at.t, at.side), rates[j] = belt_rate(j, at);
+    }
+    if (mechanics_.has_belts()) frame.offsets(belts, mode, carried), frame.offsets(rates, mode, faster);
+    if (belts[joint] != 0 || rates[joint] != 0) return false;
+    for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
+        if (carried[body] != 0 || faster[body] != 0) return false;
     }
     const auto groups = static_cast<Eigen::Index>(frame.groups());
     Eigen::MatrixXd held = Eigen::MatrixXd::Zero(groups, static_cast<Eigen::Index>(sliding_.size()));
     for (std::size_t k = 0; k < sliding_.size(); ++k) {
         const std::vector<double> slopes = gradient(*sliding_[k].function, at);
         if (!stands_still(sliding_[k], slopes, at)) continue;
-        for (std::size_t i = 0; i < n; ++i) {
+        const auto is_carried = [&](std::size_t i) {
+            return slopes[first_held(sliding_[k]) + i] != 0 && (carried[i] != 0 || faster[i] != 0);
+        };
+        bool along = false;
+        for (std::size_t i = 0; i < n; ++i) along = along || is_carried(i);
+        for (std::size_t i = 0; i < n && !along; ++i) {
             for (const auto& [group, by] : frame.bodies[i]) {
                 held(static_cast<Eigen::Index>(group), static_cast<Eigen::Index>(k)) +=
                     by * slopes[first_held(sliding_[k]) + i];
@@ -313,7 +328,7 @@ void Slides::move_aside(const Sliding& of, double side, std::vector<double>& y) 
     const std::size_t n = mechanics_.bodies();
     for (const auto& [body, by] : mechanics_.system().joints[*of.joint].of) {
         const double away = tiny * (std::fabs(y[body]) + unit_ * std::fabs(y[n + body]) +
-                                    std::fabs(of.jump) * unit_ * unit_ / mechanics_.own_inertia(body));
+                                    std::fabs(of.jump) * unit_ * unit_ / mechanics_.system().bodies[body].inertia);
         y[body] += std::copysign(away, side * by);
     }
 }
@@ -325,7 +340,7 @@ void Slides::move_out(const Sliding& of, double side, std::vector<double>& y) co
     const model::Joint& joint = mechanics_.system().joints[*of.joint];
     double weights = 0, fast = 0;
     for (const auto& [body, by] : joint.of) {
-        weights += by * by, fast += std::fabs(of.jump * by) * unit_ / mechanics_.own_inertia(body);
+        weights += by * by, fast += std::fabs(of.jump * by) * unit_ / mechanics_.system().bodies[body].inertia;
     }
     const double slip = mechanics_.velocity(*of.joint, y);
     move_aside(of, side, y);

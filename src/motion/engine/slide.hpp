@@ -47,7 +47,7 @@ public:
     std::optional<Begun> begin(Piecewise& function, const Crossing& crossing, Now& now);
     /// Returns whether the slides hold the slip of a joint: whether it depends on what this frame holds and on surfaces
     /// that stand still, and on nothing that moves, such as a belt.
-    [[nodiscard]] bool keep_slip(std::size_t joint, const Frame& frame, const Moment& at) const;
+    [[nodiscard]] bool keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
     /// The rate of the slip of a joint in this mode, with functions evaluated at this very moment, not on their pieces.
     [[nodiscard]] double slip_rate(std::size_t joint, const Mode& mode, const Moment& at);
     /// Sets the mode of contacts to evaluate with.
