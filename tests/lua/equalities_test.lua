@@ -1,5 +1,5 @@
 -- One number seen from two sides: a part and its whole, a run that goes on and the whole run, a worker and the call
--- itself, bristles under a normal load and bristles that are as much stronger, and one record read in two ways.
+-- itself, and one record read in two ways.
 dofile "tests/lua/support.lua"
 
 -- All systems here are of size 1. A motion in two parts differs from the whole by the rounding of the panels between.
@@ -266,23 +266,7 @@ test("many equal bodies around one are one body as heavy as all of them", functi
     close(all.b9.theta, two.b.theta, "a body around it")
 end)
 
--- ---- bristles, and one record read in two ways
-
-test("LuGre under the normal load 2 is the law with Rd, Re, stiffness and damping doubled", function()
-    local function law(by)
-        return friction.lugre { Rd = 0.3 * by, Re = 0.4 * by, speed = 0.2, stiffness = 20 * by, damping = 1 * by }
-    end
-    local function moved(sys) return sys:simulate { M = sine, theta0 = 0.4, t_end = 9, dt = 0.1 } end
-    local loaded = moved(system { I = 1, k = 4, C = 0.1, friction = law(1), normal = 2 })
-    local strong = moved(system { I = 1, k = 4, C = 0.1, friction = law(2) })
-    for _, name in ipairs { "theta", "velocity", "friction", "acceleration" } do
-        close(loaded[name], strong[name], name)
-    end
-    close(loaded:energy().total.dry, strong:energy().total.dry, "dry")
-    -- under a load below 0 they are apart
-    local apart = moved(system { I = 1, k = 4, C = 0.1, friction = law(1), normal = function() return -1 end })
-    close(apart.theta, moved(system { I = 1, k = 4, C = 0.1 }).theta, "theta")
-end)
+-- ---- one record read in two ways
 
 test("the same record gives the same errors with I or k given, and with a system", function()
     local function alike(fits, names)

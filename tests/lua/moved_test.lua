@@ -36,9 +36,7 @@ test("a body moved at a given velocity is a belt, whatever rubs on it", function
     end
 end)
 
-test("the ground may be a body, a jump of velocity is an impulse, and a moved body is infinitely heavy", function()
-    local one = system { I = 1, k = 4, Rd = 0.1 }:simulate { theta0 = 1, t_end = 10 }
-    expect({ bodies = { wall = { theta = 0 }, a = { I = 1 } }, links = { s = { "a", "wall", k = 4, Rd = 0.1 } } }, { theta0 = { a = 1 }, t_end = 10 }, { ["a.theta"] = one.theta })
+test("a jump of velocity is an impulse, and a moved body is infinitely heavy", function()
     local jump = { velocity = excitation.step { amplitude = 2, at = 1 } }
     local run = expect({ bodies = { crank = jump, load = { I = 3 } }, links = { gear = { "crank", "load", ratio = 2, rigid = true } } }, { t_end = 2 }, { ["load.velocity"] = 1 })
     near(run:energy().total.input, 1.5, 1e-13)
