@@ -990,8 +990,11 @@ private:
         const double error = found.open[static_cast<std::size_t>(place)] ? INFINITY : 2 * found.error[place];
         double low = value - error;
         const std::string before = body_of_value(fit, one.name);
-        for (const auto& [name, sliding] : fit.values) {
-            if (one.name == before + "Re" && name == before + "Rd") low = std::max(low, sliding);
+        for (std::size_t j = 0; one.name == before + "Re" && j < fit.system->joints.size(); ++j) {
+            change_numbers(*fit.system, j, [&](const std::string& name, const double& number, Sign /*sign*/) {
+                if (name == before + "Rd") low = std::max(low, number);  // Rd may also be given
+                return false;
+            });
         }
         fit.silent.push_back({one.name, {std::max(low, one.least == -1e300 ? low : 0.0), value + error}});
     }

@@ -147,6 +147,14 @@ test("starts and offsets of bodies are given by name, a run of several bodies is
     fit = identify { data = r, system = slides, free = { "a.Rd", "a.Re" }, measured = "a.velocity", theta0 = { a = 0 } }
     equal(table.concat(fit.silent, " "), "a.Re")
     has(fit, ">= 0.1, not determined by this record")
+    local zero, decay = 0.3, system { I = 1, k = 4, C = 0.2 }
+    r = decay:simulate { theta0 = 1, t_end = 10, dt = 0.05 }
+    fit = identify { data = { t = r.t, theta = r.theta + zero }, system = decay, free = { "k", "Rd" }, offset = zero }
+    near(fit.k, 4, 1e-6)
+    near(fit.theta0, 1, 1e-6)
+    for _, Rd in ipairs { 0, 0.05 } do
+        equal(identify { data = r, system = decay:with { Rd = Rd, Re = Rd }, free = { "Re" } }.bounds.Re[1], Rd)
+    end
 end)
 
 test("Re follows Rd if both are one number, also in each direction of an asymmetric law", function()
