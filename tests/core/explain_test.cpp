@@ -65,6 +65,7 @@ TEST_CASE("numbers in the story have only significant digits", "[explain]") {
     CHECK(against_limit(0.16699999, 0.167) == "0.16699999 <= Re = 0.167");
     CHECK(against_limit(2.95, 0.167) == "2.95 > Re = 0.167");
     CHECK(against_limit(0.5, 0.5) == "Re = 0.5");
+    CHECK(percent(0.00123) == "0.123 %");
     CHECK(against_limit(std::nextafter(0.5, 0), 0.5) == "Re = 0.5 to rounding");
     CHECK(against_limit(5.6e-17, 0.1) == "0 <= Re = 0.1");
     CHECK(counted(1, "stop") == "1 stop");

@@ -262,7 +262,13 @@ local questions = {
         local back, file = reloaded(way.part(simulated(way, kind)))
         return merged(columns(back), { header = read(file):match "^(.-)\n[^#]" })
     end,
-    repeated = function(way, kind) return rows(way.part(repeated(simulated(way, kind)))) end,
+    repeated = function(way, kind)
+        local run = simulated(way, kind)
+        local again = repeated(run)
+        same_events(again, run, 0)
+        for _, name in ipairs(run.names) do equal(again:column(name), run:column(name)) end
+        return rows(way.part(again))
+    end,
     cycle = function(way, kind) return way.part(simulated(way, kind, { t_end = 40, dt = 40 })):cycle() or {} end,
     spectrum = function(way, kind) return columns(way.part(simulated(way, kind)):spectrum {}) end,
     poincare = function(way, kind) return columns(way.part(simulated(way, kind)):poincare { period = period }) end,

@@ -111,6 +111,10 @@ test("an impact passes through rigid gears and conserves weighted momentum", fun
         links = { play = { "a", "b", walls = { lower = -0.1, upper = 0.1, restitution = e } }, gear = { "b", "c", ratio = n, rigid = true } } },
         { velocity0 = { a = 1 }, t_end = 0.4 }, { impact = 1, ["a.velocity"] = together - e * reflected / sum,
             ["b.velocity"] = together + e * 1.5 / sum, ["c.velocity"] = (together + e * 1.5 / sum) / n })
+    -- The wall of a link with a ratio gives each body an impulse times its weight.
+    local p = (1 + e) / (1 / 1.5 + 4)
+    expect({ bodies = { a = { I = 1.5 }, b = { I = 1 } }, links = { play = { "a", "b", ratio = 2, walls = { upper = 0.1, restitution = e } } } },
+        { velocity0 = { a = 1 }, t_end = 0.4 }, { impact = 1, ["a.velocity"] = 1 - p / 1.5, ["b.velocity"] = 2 * p })
 end)
 
 test("a weighted link has friction, walls and belts on its angle", function()

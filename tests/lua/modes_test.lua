@@ -46,6 +46,18 @@ test("dry friction and the jump of a spring or a load hold a mass together", fun
     }
 end)
 
+test("beside a rest a slider is its spring, a pressed elastic wall too, and an open contact is nothing", function()
+    local rows = { -- what the body has beside I and k, and its load, and the stiffness of all
+        { { friction = { friction.jenkins { stiffness = 5, Rd = 1 }, friction.jenkins { stiffness = 2, Rd = 1 } } }, 0, 11 },
+        { { walls = { lower = -0.5, upper = 0.5, stiffness = 12 } }, -8, 16 },
+        { { walls = { lower = -0.5, upper = 0.5, stiffness = 12 } }, 8, 16 },
+        { { Rd = 9, normal = function() return -1 end }, 1, 4 },
+    }
+    for _, row in ipairs(rows) do
+        near(system(merged({ I = 1, k = 4 }, row[1])):modes { M = row[2], theta0 = row[2] / 4 }[1].im, row[3] ^ 0.5, 1e-9)
+    end
+end)
+
 test("friction that falls with the speed drives a mass on a belt", function()
     local law = { Rd = 0.3, Re = 0.6, speed = 0.1 }
     local sys = system { I = 1, k = 4, C = 0.2, friction = friction.stribeck(law) }

@@ -32,6 +32,20 @@ test("the plot of a driven run shows theta and M/k, of a free one only theta, an
     has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }), "stuck")
 end)
 
+test("what is a straight line between coarse rows is drawn as one, and what no row shows as it is", function()
+    local function ramped(dt) return system { I = 1, k = 1, Rd = 9 }:simulate { M = excitation.ramp {}, t_end = 4, dt = dt } end
+    equal(picture(ramped(4), { y = "friction" }), picture(ramped(0.01), { y = "friction" }))
+    -- The phase plane is the same for motions that are alike in another time.
+    local function struck(rate)
+        local sys = system { I = 1, k = rate ^ 2, walls = { upper = 0.5, restitution = 0.6 } }
+        return picture(sys:simulate { theta0 = -1, t_end = 8 / rate, dt = 8 / rate }, {}, "phase_plot")
+    end
+    equal(struck(4), struck(1))
+    local x, y = vector.range(0, 9), vector { 3, 1, 4, 1, 5, 9, 2, 6, 5, 3 }
+    local function area(options) return tostring(plot { merged({ x, y }, options), show = false, width = 60, ascii = true }) end
+    equal(area { style = "fill", base = y }, area {})
+end)
+
 test("x and y choose columns by name or number, torques over k as in the record of 1989", function()
     has(picture(run, { x = "theta", y = "friction" }), "friction", "theta, rad")
     has(picture(run, { y = { "friction/k", "damping/k", "M/k", "velocity/omega0" } }), "a friction/k", "d theta'/omega0")

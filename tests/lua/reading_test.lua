@@ -69,7 +69,11 @@ end)
 test("constants of a formula are read again when they may have changed", function()
     local a, p, many = 1, { b = 2 }, vector.range(1, 50)
     local e = excitation.scripted(function(t) return a * t + p.b end)
-    local function last() return e:values(many)[50] end
+    local function last()
+        local run = system { I = 1, k = 1 }:simulate { M = e, t_end = 51, times = { 50 } }
+        near(run.M[1], e:values(many)[50], 1e-10)
+        return e:values(many)[50]
+    end
     equal(last(), 52.0)
     a = 3
     equal(last(), 152.0)
@@ -83,6 +87,11 @@ test("constants of a formula are read again when they may have changed", functio
     equal(last(), 500.0)
     math.floor = floor
     equal(last(), 50.0)
+    local list = { 1, 2 }
+    e = excitation.scripted(function(t) return #list * t end)
+    equal(last(), 100.0)
+    list[3] = 3
+    equal(last(), 150.0)
     local base = { gain = 2 }
     local own = setmetatable({}, { __index = setmetatable({}, { __index = base }) })
     e = excitation.scripted(function(t) return own.gain * t + (own.none and 1 or 0) end)

@@ -112,6 +112,7 @@ test("folds, jumps and unstable branches are rows, and a picture in pieces", fun
     equal(#c.jumps, 2)
     equal(table.concat(c.jumps.sweep, " "), "down up")
     assert(c.jumps.frequency[1] < 0.3 and c.jumps.frequency[2] > 0.3)
+    has(picture(at), "unstable")
     local picture = tostring(c:plot{ overlay = "jumps", show = false })
     has(picture, "unstable", "jumps")
     refused {

@@ -236,6 +236,8 @@ test("an unstable motion is found if the number of its periods is given", functi
     local s = well:steady{ M = M, theta0 = 0.5, periods = 1 }
     assert(s.status == "steady" and not s.stable and s.multipliers[1].abs > 1.1, s)
     has(s, "stops a period, unstable")
+    local c = well:response{ over = { omega = { 1.2 } }, at = function() return { M = M, theta0 = 0.5, periods = 1 } end }
+    near(c.amplitude[1], s.amplitude, 1e-9)
     near(s.run.theta[#s.run], s.run.theta[1], 1e-8)
 end)
 
@@ -269,6 +271,13 @@ test("the limit of a load before its jump at the end of the period counts for th
         for _, theta0 in ipairs{ 0, 0.1 } do -- from 0.1 it creeps up to the edge of where it may rest
             finds(sys, { M = M, theta0 = theta0 }, { status = "adheres", ["rest.lower"] = -0.05, ["rest.upper"] = 0.05, within = 1e-14 })
         end
+    end
+end)
+
+test("walls end the range of rest", function()
+    for _, walls in ipairs{ { lower = -0.02, upper = 0.2 }, { lower = -0.2, upper = 0.02 } } do
+        finds({ I = 1, k = 2, Rd = 0.2, walls = walls }, { M = excitation.harmonic{ amplitude = 0.1 , omega = 1 } },
+            { status = "adheres", ["rest.lower"] = math.max(-0.05, walls.lower), ["rest.upper"] = math.min(0.05, walls.upper) })
     end
 end)
 

@@ -150,6 +150,18 @@ for kind, make in pairs(kinds) do
     end
 end
 
+test("what a window cuts off samples has no effect", function()
+    local t = vector.range(0, 240) / 20
+    for _, method in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        local function moved(outside)
+            local M = (3 * t):sin():map(function(x, i) return (i <= 60 or i > 162) and outside or x end)
+            local cut = excitation.samples { t = t, M = M }:window(3, 8)
+            return system { I = 1, k = 4, Rd = 0.1 }:simulate(merged(start, { M = cut, t_end = 12, dt = 0.1, integrator = method })).theta
+        end
+        close(moved(5), moved(0), tostring(method))
+    end
+end)
+
 test("a mass that its base will move later does not rest for good", function()
     local sys = system { I = 1, k = 4, Rd = 1.5 }
     equal(sys:simulate { base = sine, t_end = 0.1 }.status, "stuck")

@@ -106,6 +106,7 @@ class Values(AtHome):
         terminal.enter("t = {} for i = 1, 5000 do t[i] = i end")
         *_, last, left, _ = terminal.enter("t").splitlines()
         equal(left, f"  ... {5000 - int(last.rstrip(',').split()[-1])} more")
+        contained("  b = 0.12345678901\n", terminal.enter("{ a = { 1/3, 1/7, 1/9, 1/11, 1/13, 1/17, 1/19 }, b = 0.12345678901 }"))
 
     def test_everything_fits_in_forty_columns(self):
         terminal = self.terminal(width=40, height=50)
@@ -186,6 +187,9 @@ class Notices(AtHome):
         terminal = self.terminal()
         terminal.enter("velocity = 3")
         equal(terminal.enter("velocty"), "nil\n(there is no variable 'velocty'; did you mean 'velocity'?)")
+        terminal.enter("sys = nondimensional{}")
+        terminal.enter("system{ I = 1, k = 1 }")  # is ans
+        contained("did you mean 'sys.dead_zone'?", terminal.enter("dead_zone + 1").replace("\n", " "))
         equal(terminal.enter("xyzzy"), "nil")
         contained(":quit", terminal.enter("exit"))
 
