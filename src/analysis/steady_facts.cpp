@@ -92,7 +92,9 @@ std::pair<double, double> rest_without_walls(const SteadyQuestion& question, dou
 bool contracts(const SteadyQuestion& question) {
     if (question.is_plain()) {
         const model::Oscillator& body = question.body;
-        return is_monotone(body.friction(), body.spring(), body.walls()) && !question.drive.M().has_feedback();
+        const auto acts = [](const model::WantedEvent& event) { return event.act != nullptr; };
+        return is_monotone(body.friction(), body.spring(), body.walls()) && !question.drive.M().has_feedback() &&
+               std::ranges::none_of(question.drive.events, acts);
     }
     const model::Drive& drive = question.drive;
     const auto asks = [](const model::Excitation& of) { return of.has_feedback() || model::has_memory(of); };

@@ -35,6 +35,22 @@ test("a bounded motion does not grow, and one of a family is not called the only
     assert(sys:steady{ M = M }.unique ~= "proven")
 end)
 
+test("a motion is not the only one where acts keep up another, and for a rig as for one body", function()
+    local sine = excitation.harmonic{ amplitude = 0.25, omega = 1.93 }
+    local body = { I = 1, k = 4, C = 0.1, Rd = 0.1 }
+    local function kick(_, theta, velocity) return theta, velocity + 0.6 end
+    local kicked = { { when = function(t, theta) return theta - 0.8 end, direction = "up", act = kick } }
+    for velocity0, amplitude in pairs{ [0] = 0.46243670, [6] = 1.54833071 } do
+        local s = system(body):steady{ M = sine, events = kicked, velocity0 = velocity0 }
+        near(s.amplitude, amplitude, 1e-7)
+        assert(s.unique ~= "proven")
+    end
+    local rig = system{ bodies = { a = body } }
+    kicked[1].when = function(t, theta) return theta.a - 0.8 end
+    kicked[1].act = function(_, _, velocity) velocity.a = velocity.a + 0.6 end
+    assert(rig:steady{ M = { a = sine }, events = kicked }.unique ~= "proven")
+end)
+
 test("unique is true only where it is proven", function()
     local load = harmonic(0.7)
     local uneven = system{ I = 1, k = 4, friction = friction.asymmetric{ forward = { Rd = 0.3 }, backward = { Rd = 0.2 } } }

@@ -111,8 +111,6 @@ def cells():
     check("data are a table, and words are no HTML", "<td>&lt;b&gt;</td>" in seen["value"]["text/html"], seen["value"])
     seen = notebook.run("x = 1;")
     check("a statement shows nothing", seen["value"] is None and seen["error"] is None, seen)
-    seen = notebook.run("local lost = 1")
-    check("a notice is told beside it", "lost" in seen["stderr"], seen)
 
     seen = notebook.run("x = 1\nlocal s = sistem{}")
     check("an error with its line and a mark", "sistem" in seen["error"] and "^" in seen["error"], seen["error"])
