@@ -29,6 +29,16 @@ test("a bounce by act, written in two ways, is reported once, and the mass stays
     end
 end)
 
+test("an act that reverses a block makes no turn, and one that throws it over the zero of another event no passage", function()
+    for _, method in ipairs(methods) do
+        local function at_one(act) return { when = function(t) return t - 1 end, act = act } end
+        expect(block, { velocity0 = 1, t_end = 3, integrator = method, events = { at_one(function(_, theta, v) return theta, -v end) } },
+            { events = 1, user = { 1 }, theta = -1, within = 1e-11 })
+        expect(block, { theta0 = 0.05, velocity0 = -0.1, t_end = 12, integrator = method,
+            events = { at_one(function(_, _, v) return 0.8, v end), { when = above } } }, { user = { 1, 8 }, within = 1e-9 })
+    end
+end)
+
 test("a state that reaches zero with an event can be reversed by its act", function()
     for _, method in ipairs(methods) do -- to 1.25, and then to and fro over a length of 2
         expect(block, { t_end = 10, dt = 1, integrator = method,

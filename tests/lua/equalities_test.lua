@@ -86,6 +86,12 @@ test("the energy of each part of a system is its row in the energy of all", func
     end
 end)
 
+test("what flows in two bodies that nothing links is the sum of what flows in each", function()
+    local function flow(bodies, M) return system { bodies = bodies }:simulate { M = M, t_end = 9 }:energy().total.flow end
+    local both = flow({ a = a, b = b }, { a = sine, b = 0.5 * sine })
+    close(both, flow({ a = a }, { a = sine }) + flow({ b = b }, { b = 0.5 * sine }), "flow")
+end)
+
 test("column M is M at the rows, also of a mass that is stuck or at rest, and M of an event is M at its time", function()
     local methods = { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-10 } }
     for _, method in ipairs(methods) do

@@ -156,4 +156,15 @@ test("a wrong law of friction is reported under a feedback, too", function()
     equal(identify{ data = record(run, 1, 0.003), M = M }.misfit, "velocity")
 end)
 
+test("errors are honest where a part of the record is much noisier", function()
+    local sys, judged, part, ratio = system { I = 1, k = 4, C = 0.1, Rd = 0.05 }, judge()
+    local run = sys:simulate { theta0 = 1, t_end = 20, dt = 0.05 }
+    for seed = 1, lots(20) do
+        local noise = vector.normal { n = #run, seed = seed, std = 0.002 }:map(function(x, i) return i < 60 and 20 * x or x end)
+        local fit = identify { data = { t = run.t, theta = run.theta + noise }, I = 1, offset = 0 }
+        part, ratio = judged(fit, { k = 4, C = 0.1, Rd = 0.05, theta0 = 1, velocity0 = 0 })
+    end
+    assert(part > 0.9 and ratio < 1.3, part .. " " .. ratio)
+end)
+
 finish()

@@ -111,6 +111,7 @@ test("an impact passes through rigid gears and conserves weighted momentum", fun
         links = { play = { "a", "b", walls = { lower = -0.1, upper = 0.1, restitution = e } }, gear = { "b", "c", ratio = n, rigid = true } } },
         { velocity0 = { a = 1 }, t_end = 0.4 }, { impact = 1, ["a.velocity"] = together - e * reflected / sum,
             ["b.velocity"] = together + e * 1.5 / sum, ["c.velocity"] = (together + e * 1.5 / sum) / n })
+    near(system { bodies = { a = { I = 2 }, b = { I = 3 } }, links = { s = { "a", "b", ratio = 2, k = 5 } } }.s.omega0, (5 * (1 / 2 + 4 / 3)) ^ 0.5, 1e-14)
     -- The wall of a link with a ratio gives each body an impulse times its weight.
     local p = (1 + e) / (1 / 1.5 + 4)
     expect({ bodies = { a = { I = 1.5 }, b = { I = 1 } }, links = { play = { "a", "b", ratio = 2, walls = { upper = 0.1, restitution = e } } } },

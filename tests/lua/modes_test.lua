@@ -24,6 +24,13 @@ test("bodies have the modes of their matrices, also through gears", function()
     near(modes[2].im, 3, 1e-14)
     near(modes[1].shape.b / modes[1].shape.a, 1, 1e-13)
     near(modes[2].shape.b / modes[2].shape.a, -1, 1e-13)
+    -- Damping at one of them makes the other lead: shape + i quadrature is an eigenvector.
+    local damped = system { bodies = { a = { I = 1, k = 4, C = 0.8 }, b = { I = 1, k = 4 } }, links = { rod = { "a", "b", k = 1 } } }
+    for _, mode in ipairs(damped:modes()) do
+        local re, im, s, q = mode.re ^ 2 - mode.im ^ 2 + 5, 2 * mode.re * mode.im, mode.shape, mode.quadrature
+        near(re * s.b - im * q.b, s.a, 1e-12)
+        near(re * q.b + im * s.b, q.a, 1e-12)
+    end
     local n = 3
     local geared = system { bodies = { motor = { I = 2 }, load = { I = 5, k = 7 } }, links = { gear = { "motor", "load", ratio = n, rigid = true } } }
     local mode = geared:modes()[1]

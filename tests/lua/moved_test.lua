@@ -56,6 +56,8 @@ test("a moved body is written, changed and refused", function()
     local rig = system { bodies = { cam = { theta = 0.5, I = 1 }, a = { I = 1 } }, links = { s = { "a", "cam", k = 1 } } }
     has(tostring(rig), "cam = { I = 1, theta = ")
     says(rig:simulate { t_end = 1 }, "cam is moved by its angle, which takes torques from")
+    local slow = system { bodies = { cam = { theta = excitation.ramp {} }, a = { theta = 0 } }, links = { s = { "cam", "a", k = 3 } } }
+    says(slow:simulate { t_end = 2 }, "which takes torques from 0 to 6 at the rows")
     refused {
         { "rig:simulate { t_end = 1, theta0 = { cam = 1 } }", "this body is moved by its theta" },
         { "rig:steady {}", "a body is moved" },

@@ -201,6 +201,8 @@ class Objects(unittest.TestCase):
         self.assertLess(np.abs(theta - self.run.at(t)[0]).max(), 1e-9)
         equal((form, ax.told["set_title"][0][0][0], ax.told["set_xscale"][0][0][0]), ("-", "a run", "linear"))
         equal(len(ax.told["axvspan"]), len(self.run.events.t[self.run.events.kind == "rest"]))
+        dinal.plot([[1, 10], [1, 100]], xlog=True, ax=(log := Axes()))
+        equal([log.told[f"set_{of}scale"][0][0][0] for of in "xy"], ["log", "linear"])
         two = [Axes(), Axes()]
         self.run.plot(y=["theta", "velocity"], ax=two)
         equal([len(one.told["plot"]) for one in two], [1, 1])

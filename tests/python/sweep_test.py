@@ -327,7 +327,9 @@ class Deaths(InAFolder):
                 def __init__(self): self.d = 6
                 def use(self, x): return self.C + self.d + 7 * x
             tool = Tool()
-            def point(p, b=1, *, c=3): return {"y": (lambda x: inner(x))(p.r) + b + c + helper.B + tool.use(1)}
+            def made(e): return lambda: e
+            last = made(9)
+            def point(p, b=1, *, c=3): return {"y": (lambda x: inner(x))(p.r) + b + c + helper.B + tool.use(1) + last()}
             dinal.sweep(over={"r": np.arange(3.)}, run=point, file="map.csv")
             """
         code = textwrap.dedent(code)
@@ -336,7 +338,7 @@ class Deaths(InAFolder):
             shown = self.python("-c", before + code)
             equal((shown.returncode, shown.stderr), (0, ""))
         changes = [("A = 2", "A = 3"), ("A * x", "A + x"), ("b=1", "b=2"), ("c=3", "c=5"), ("p.r)", "p.r + 1)"), ("3.", "4."), ("C = 5", "C = 4"),
-                   ("d = 6", "d = 5"), ("7 * x", "8 * x")]
+                   ("d = 6", "d = 5"), ("7 * x", "8 * x"), ("made(9)", "made(8)")]
         # All in one process, as to start one takes longer than to refuse.
         others = "\n".join([f"for old, new in {changes}:",
                             "    try:",
