@@ -35,30 +35,6 @@ void check_like_whole(const Run& parts, const Run& whole, const ReferenceSystem&
 
 }  // namespace
 
-TEST_CASE("a run in three parts equals the run in one, for every reference system", "[resume][spectral][rk4]") {
-    for (const ReferenceSystem& s : reference_systems()) {
-        const double h = std::min(s.oscillator.natural_period() / 1000, rk4::stability_limit(s.oscillator) / 10);
-        const double length = s.window.end - s.window.start;
-        const Grid rows = Grid::every(length / 61.3);
-        for (const Integrator& integrator : std::vector<Integrator>{Exact{}, Spectral{}, Rk4{h}}) {
-            CAPTURE(s.name, integrator.index());
-            const Run whole = must_run(s, rows, integrator);
-            Run run = must_run(s.oscillator, s.excitation, s.initial, {s.window.start, s.window.start + 0.337 * length},
-                               rows, integrator);
-            for (const double part : {0.5, 1.0}) {
-                const double t_end = part == 1 ? s.window.end : s.window.start + part * length;
-                auto longer = resume(s.oscillator, s.excitation, run, t_end, rows, integrator);
-                if (!longer) FAIL(longer.error().sentence);
-                run = std::move(longer).value();
-            }
-            // exact and spectral: rounding, which the swings since add up. rk4: its steps are others, so its own error.
-            const double rounding = 1e-13 + 4e-16 * s.radians();
-            const double truncation = s.radians() * std::pow(s.fastest_rate() * h, 4) / 60 + 1e-9;
-            check_like_whole(run, whole, s, std::holds_alternative<Rk4>(integrator) ? truncation : rounding);
-        }
-    }
-}
-
 TEST_CASE("a run that is stopped among many rows between two events continues as if it had not been", "[resume]") {
     const Oscillator system = nondimensional(0.01, 0);
     const Grid rows = Grid::every(1e-5);

@@ -67,14 +67,6 @@ test("bristles bend before they slip: LuGre is a state and a part of M, and Dahl
     refused { { "friction.dahl { Rd = 0, stiffness = 10 }", "Rd = 0 must be positive" } }
 end)
 
-test("continuing one body continues the run of all bodies", function()
-    local rig = system { bodies = { a = { I = 2, k = 3, C = 0.1, Rd = 0.2 }, b = { I = 1 } }, links = { link = { "a", "b", k = 4 } } }
-    local run = rig:simulate { M = { a = math.sin }, t_end = 3, dt = 0.1 }
-    local body, whole = run.b:continue { t_end = 5 }, run:continue { t_end = 5 }
-    equal(tostring(body.theta), tostring(whole.b.theta))
-    equal(tostring(body:continue { t_end = 6 }.velocity), tostring(whole:continue { t_end = 6 }.b.velocity))
-end)
-
 test("accelerations are those of the equation of motion, and 0 where a body is held", function()
     local rig = pair({ I = 2, k = 3, C = 0.1 }, { I = 1, Rd = 5 }, { k = 4 })
     local run = rig:simulate { M = { a = math.sin }, theta0 = { a = 0.5 }, velocity0 = { b = 0.2 }, t_end = 4, dt = 0.5 }

@@ -14,7 +14,9 @@ local function same_rows(a, b)
 end
 
 for name, integrator in pairs {
-    -- the others: resume_test.cpp
+    exact = integrator.exact {},
+    spectral = integrator.spectral {},
+    rk4 = integrator.rk4 { h = 0.01 },
     dopri5 = integrator.dopri5 { tolerance = 1e-14 },
     dinal1989 = integrator.dinal1989 { h = 0.01 },
 } do

@@ -265,13 +265,4 @@ test("the energy adds up under every law, and rows contain its friction", functi
     end
 end)
 
-test("a law with equal numbers in both directions is Coulomb's, bit for bit", function()
-    local twice = friction.asymmetric { forward = { Rd = 0.1, Re = 0.2 }, backward = { Rd = 0.1, Re = 0.2 } }
-    for _, by in ipairs { integrator.exact {}, by_panels, integrator.rk4 { h = 0.01 } } do
-        local function run(own) return system(merged({ I = 1, k = 1 }, own)):simulate { M = excitation.harmonic { amplitude = 0.5, omega = 1.3 }, theta0 = 1, t_end = 50, dt = 0.1, integrator = by } end
-        local one, other = run { Rd = 0.1, Re = 0.2 }, run { friction = twice }
-        for _, name in ipairs(one.names) do equal(one[name], other[name], name) end
-    end
-end)
-
 finish()

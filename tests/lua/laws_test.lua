@@ -147,10 +147,7 @@ test("a law without an Rd lacks this field, and elastic stops are the walls", fu
     refused { { "stopped.dead_zone", "with elastic walls a mass has no dead zone" } }
 end)
 
-test("the energy adds up with sliders on a belt, and with an impact that reverses a slider", function()
-    local element = friction.jenkins { stiffness = 20, Rd = 1 }
-    local total = closes(system { I = 1, k = 4, friction = element }:simulate { belt = 0.5, t_end = 9 }).total
-    assert(total.dry > 0.1 and total.belt > 0.1)
+test("an impact reverses a slider", function()
     local walls = { lower = -0.5, upper = 0.5, restitution = 0.9 }
     local M = excitation.harmonic { amplitude = 4, omega = 1.3 }
     local by_hand = system { I = 1, k = 1, walls = walls }:simulate { M = M + excitation.scripted(function(_, _, _, z) return -5 * z.z end),

@@ -14,13 +14,6 @@ test("a map shows digits if z has only a few whole numbers", function()
     has(lines[#lines - 2], "0000")
 end)
 
-test("a map is described by its least and its greatest value and their places", function()
-    local file = temporary ".svg"
-    local hill = data { x = map.x, y = map.y, z = 1 - (map.x - 0.5) ^ 2 - (map.y - 0.5) ^ 2 }
-    hill:plot { x = "x", y = "y", z = "z", file = file }
-    has(read(file), "least -1.5 at (0, 2), greatest 1 at (0.5, 0.5)")
-end)
-
 test("a map shows shades of other values, in ASCII too", function()
     local text = tostring(map:plot { z = "slope", show = false })
     has(text, "█", "·", "slope:")

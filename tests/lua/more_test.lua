@@ -31,24 +31,6 @@ test("states are columns of the run, of its file, of run:at, and of plots", func
     assert(run:energy().total.closure < 1e-11)
 end)
 
-test("the header of a file repeats a run with states, events and controllers", function()
-    local gain = 0.2
-    local runs = {
-        block:simulate(pid { belt = 0.1, events = { { when = function(t, theta) return theta - 0.5 end, name = "half", direction = "up" } } }),
-        block:simulate { M = excitation.sampled(function(t, theta) return 1 - gain * theta end, { every = 0.1, delay = 0.05 }), t_end = 2, dt = 0.1 },
-        block:simulate { M = 2 * excitation.relay { on = -0.1, off = 0.1, amplitude = { 1, -1 } } + 0.1, t_end = 4, dt = 0.1 },
-        block:simulate { M = excitation.delayed(function(t, theta) return 1 - theta end, { by = 0.3 }), t_end = 4, dt = 0.1,
-            base = excitation.harmonic { amplitude = 0.1, frequency = 1 } },
-        block:simulate { velocity0 = 1, t_end = 4, dt = 0.1,
-            events = { { when = function(t, theta) return theta - 0.4 end, act = function(t, theta, velocity, z) return theta, -velocity end } } },
-    }
-    for i, run in ipairs(runs) do
-        local again = repeated(run)
-        equal(#again.events, #run.events)
-        near(again.theta, run.theta, 1e-13)
-    end
-end)
-
 test("a continued run calls a sampled function once at each instant, as the whole run does", function()
     local calls = 0
     local function task(t_end)

@@ -86,18 +86,6 @@ test("a relay that depends on another body has a limit cycle", function()
     near(s.period, since(rig:simulate { M = M, t_end = 400 }, "switch", 2), 1e-9)
 end)
 
-test("one body with varying friction that happens to be constant moves as with constant friction", function()
-    local own = { I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.4 }
-    local s = system(own):steady { M = sine(1.3, 2) }
-    own.normal = function(t) return 1 end
-    local varying = system(own):steady { M = sine(1.3, 2) }
-    near(varying.amplitude, s.amplitude, 1e-9)
-    near(varying.lag, s.lag, 1e-8)
-    equal(varying.stops, s.stops)
-    equal(#varying.run, 401)
-    near(varying.multipliers[1].abs, s.multipliers[1].abs, 1e-7)
-end)
-
 test("a damper coupled only by friction moves with the period of M, and adheres if friction is large", function()
     local function steady(Rd)
         return system { bodies = { machine = { I = 1, k = 1, C = 0.02 }, damper = { I = 0.28 } }, links = { joint = { "machine", "damper", Rd = Rd } } }

@@ -40,14 +40,6 @@ test("the default integrator is exact if that accepts M, otherwise spectral", fu
     refused { { "nd:simulate { M = chirp, t_end = 1, dt = 1, integrator = integrator.exact {} }", "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}" } }
 end)
 
-test("t_start shifts the window, and is not an event", function()
-    local run = nondimensional {}:simulate { theta0 = 1, t_start = 5, t_end = 6.2, dt = 0.1 }
-    equal(run.t[1], 5.0)
-    near(run.events[1].t, 5.5, 1e-9)
-    near(run.events[2].t, 6.0, 1e-9)
-    equal(#run.events, 2)
-end)
-
 test("missing, superfluous and misspelt options are errors that suggest the right ones", function()
     refuses(function(o) nd:simulate(o) end, {
         { { dt = 0.1 }, "sys:simulate needs t_end, for example" },

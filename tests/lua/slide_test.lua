@@ -436,27 +436,6 @@ test("friction stops a body at the step of a staircase, from which side it ever 
     end
 end)
 
-test("a feedback that begins exactly at its limit holds like dry friction", function()
-    local signs = {
-        function(v) return v > 0 and 1 or v < 0 and -1 or 0 end,
-        function(v) return v > 0 and 1 or -1 end,
-        function(v) return v < 0 and -1 or 1 end,
-    }
-    for _, sign in ipairs(signs) do
-        for _, m in ipairs { 0.1, 0.5 } do
-            for _, load in ipairs { m, -m } do
-                for _, case in ipairs { { load, 0 }, { 0, load } } do -- by the load, by the spring
-                    local function f(t) return case[1] + math.sin(t) end
-                    local start = { theta0 = case[2], t_end = 20, dt = 0.5 }
-                    local run = system { I = 0.5, k = 1, C = 0.1 }:simulate(merged(start, { M = function(t, _, v) return f(t) - m * sign(v) end }))
-                    local dry = system { I = 0.5, k = 1, C = 0.1, Rd = m }:simulate(merged(start, { M = f }))
-                    near(run.theta, dry.theta, 1e-11)
-                end
-            end
-        end
-    end
-end)
-
 test("a preload holds a body whose friction vanishes there or varies", function()
     local function jump(x) return x > 0 and 1 or -1 end
     local varies = system { I = 1, k = 4, C = 0.2, Rd = function(t) return 0.2 * (1 + 0.5 * math.sin(t)) end, spring = function(x) return math.abs(x) * x + 0.5 * jump(x) end }

@@ -42,8 +42,6 @@ OTHER = {
     "samples of a file": ("local f = io.open('s.csv', 'w') f:write('t,M\\n0,0\\n1,VALUE\\n') f:close() local M = excitation.samples 's.csv'", RUN),
     "a controller that samples":
         ("local c = VALUE local M = excitation.sampled(function(t, x) return c*x end, { every = 0.1 })", RUN),
-    "the start of a controller": ("local c = VALUE local M = excitation.sampled(function(t, x, v, z, m) m.x = m.x + x return m.x end, "
-                                  "{ every = 0.1, start = function() return { x = c } end })", RUN),
     "a controller with a dead time":
         ("local c = VALUE local M = excitation.delayed(function(t, x) return c*x end, { by = 0.1 })", RUN),
     "a relay of a function": ("local c = VALUE local M = excitation.relay{ of = function(t, x) return c*x - 0.05 end, "
