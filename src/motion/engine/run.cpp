@@ -380,7 +380,8 @@ bool Engine::arrive(double x, bool whole) {
     const double length = whole ? 2 * segment_.h : segment_.h * (1 + x);
     if (x > -1) go_to(x);
     now_.t = whole && segment_.to_the_end ? Clock{segment_.end, 0} : segment_.start.later(length);
-    now_.after_break = whole && segment_.to_break && now_.t.hi < problem_.window.end;
+    const bool at_break = whole && segment_.to_break;
+    now_.after_break = at_break && now_.t.hi < problem_.window.end;
     if (now_.after_break) conditions_->pass_break(now_);
     mechanics_.forget_jumps(now_.t.hi);
     if (pace_.bad_time <= now_.t.hi) pace_.bad_time = model::never, mechanics_.forget_failure();
@@ -395,7 +396,7 @@ bool Engine::arrive(double x, bool whole) {
     const bool echoed = breaks_.pass_echoes(now_.t.hi);
     if (!whole || (now_.after_break && !echoed)) breaks_.echo(now_.t.hi, 1);
     find_belt_slopes(now_.after_break ? std::nullopt : std::optional(x));
-    project(now_.after_break ? Side::before : Side::at);
+    project(at_break ? Side::before : Side::at);
     if (!sample_controllers()) return fail(Outcome::excitation_not_finite);
     const bool changed = open_and_close();
     if (now_.after_break) return ask_after_break();
