@@ -14,6 +14,7 @@
 #include "model/sticking.hpp"
 #include "motion/belt_slope.hpp"
 #include "motion/engine/part.hpp"
+#include "motion/stillness.hpp"
 #include "text/words.hpp"
 
 namespace dinal::analysis {
@@ -94,6 +95,7 @@ public:
         tell_setting();
         tell_start();
         tell_counts();
+        tell_sliders();
         tell_open();
         tell_slides();
         tell_turns();
@@ -383,7 +385,9 @@ private:
         if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
         if (run_.events.empty() && swings_.size() == 1) {
             const model::State &begin = run_.initial, &end = run_.state_at_stop;
-            const bool stayed = begin.velocity == 0 && end.velocity == 0 && begin.theta == end.theta;
+            const double rounded = 64 * std::numeric_limits<double>::epsilon() * std::fabs(begin.theta);
+            const bool stayed =
+                begin.velocity == 0 && motion::stands_at_stop(run_) && std::fabs(begin.theta - end.theta) <= rounded;
             say("{}", stayed ? "It stayed there: M and the spring are in balance."
                              : "It moved in one direction all the time.");
             return;
@@ -409,6 +413,23 @@ private:
         } else if (open > 0) {
             say("It was open for {} of the time.", text::percent(open / all));
         }
+    }
+
+    /// Counts the events of dry sliders behind springs, which are none of the mass.
+    void tell_sliders() {
+        const auto count = [this](model::EventKind kind) {
+            const auto is = [kind](const model::Event& event) { return event.kind == kind; };
+            return static_cast<std::size_t>(std::ranges::count_if(run_.events, is));
+        };
+        const std::size_t sliders = joint_.friction.sliders.size(), slips = count(model::EventKind::slider_slips);
+        if (sliders == 0) return;
+        const std::string who = sliders == 1 ? "Its slider" : "Its sliders";
+        if (slips == 0) {
+            say("{} never slipped.", who);
+            return;
+        }
+        say("{} slipped {} and stuck again {}.", who, text::counted(slips, "time"),
+            text::counted(count(model::EventKind::slider_sticks), "time"));
     }
 
     /// Describes motions along a surface on which M, a spring or the rate of a state jumps.
@@ -602,7 +623,7 @@ private:
         }
         if (const Stretch& last = stretches_.back(); !failed && !last.stuck) {
             say("At the end, t = {}, theta = {} and velocity = {:.5g}.", at(run_.t_stop), place(last),
-                last.end.velocity);
+                motion::stands_at_stop(run_) ? 0 : last.end.velocity);
         }
         end_paragraph();
     }

@@ -198,8 +198,7 @@ std::string summary(const Run& run) {
     text += fmt::format(", t {:.9g} … {:.9g}; {}; ", run.t_start, run.t_stop, events_text(events));
     switch (run.outcome) {
         case model::Outcome::reached_end:
-            text +=
-                run.find("theta") && run.state_at_stop.velocity == 0 ? "velocity 0 at the end" : "moving at the end";
+            text += run.find("theta") && stands_at_stop(run) ? "velocity 0 at the end" : "moving at the end";
             break;
         case model::Outcome::chattering:
             text += chatter_text(run);

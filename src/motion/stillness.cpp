@@ -118,6 +118,18 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
     return turns;
 }
 
+bool stands_at_stop(const Run& run) {
+    if (run.state_at_stop.velocity == 0) return true;
+    const auto t = run.find("t"), theta = run.find("theta"), velocity = run.find("velocity");
+    const Eigen::Index last = run.size() - 1;
+    if (!t || !theta || !velocity || last < 1) return false;
+    const double dt = run.rows(last, *t) - run.rows(last - 1, *t), place = run.rows(last, *theta);
+    const double moved =
+        std::max({std::fabs(place - run.rows(last - 1, *theta)), std::fabs(run.rows(last, *velocity)) * dt,
+                  std::fabs(run.rows(last - 1, *velocity)) * dt});
+    return moved <= 64 * std::numeric_limits<double>::epsilon() * std::fabs(place);
+}
+
 double peak(const Run& run) {
     double greatest = std::max(std::fabs(run.initial.theta), std::fabs(run.state_at_stop.theta));
     if (const auto theta = run.find("theta"); theta && run.size() > 0) {

@@ -14,6 +14,10 @@ void settle(Run& run, const model::Oscillator& system, const model::Drive& drive
 /// The turns of theta on a belt, which are not recorded as events. They are searched between events and rows.
 std::vector<model::Event> turns_on_belt(const Run& run);
 
+/// Returns whether the mass stands at the end of the run: its velocity is 0, or the rounding of its place where a load
+/// holds it at a jump.
+bool stands_at_stop(const Run& run);
+
 /// The greatest |theta| of the motion, also between the rows; rad.
 double peak(const Run& run);
 

@@ -289,4 +289,19 @@ test("the story of a run that failed before anything moved the mass says that it
     has_not(told(dinal.partial), "moved off", "in balance")
 end)
 
+test("the story counts the slips of a slider behind a spring beside the stops of the mass", function()
+    local sys = system { I = 1, k = 1, friction = friction.jenkins { stiffness = 4, Rd = 0.5 } }
+    local function run(amplitude) return sys:simulate { M = excitation.harmonic { amplitude = amplitude, omega = 0.7 }, t_end = 20 } end
+    says(run(2), "4 turns and 0 stops. Its slider slipped 5 times and stuck again 4 times.")
+    says(run(0.1), "Its slider never slipped.")
+end)
+
+test("a mass that a feedback holds at its jump stands from beginning to end", function()
+    local run = system { I = 1, k = 1 }:simulate { theta0 = 0.1, t_end = 20, M = function(_, _, v)
+        return 0.2 * v - 0.5 * (v > 0 and 1 or v < 0 and -1 or 0)
+    end }
+    has(run, "velocity 0 at the end")
+    says(run, "It stayed there", "velocity = 0.")
+end)
+
 finish()
