@@ -69,7 +69,7 @@ private:
     bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
     bool is_bounded() const override { return false; }
     bool is_free() const override {
-        return question().is_plain() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
+        return question().is_alone() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
                question().body.spring().none() && !question().body.walls();
     }
 

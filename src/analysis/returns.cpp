@@ -63,7 +63,7 @@ bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
 
 Chart chart_of(Runs& runs) {
     const SteadyQuestion& question = runs.question();
-    const bool under_M_alone = question.is_plain() && !question.is_timeless() && !question.drive.has_more();
+    const bool under_M_alone = question.is_alone() && !question.is_timeless() && !question.drive.has_more();
     if (under_M_alone && !question.advances) return Chart({-1});
     const double period = runs.question().repeats.period, natural = runs.natural_period();
     const double length = period > 0 ? period : natural > 0 ? natural : 1;

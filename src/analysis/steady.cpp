@@ -52,7 +52,7 @@ SteadyQuestion advancing(SteadyQuestion question) {
 
 /// Returns whether nothing restores the angle of a plain body, on which M alone acts.
 bool is_free_block(const SteadyQuestion& question) {
-    return question.is_plain() && !question.is_timeless() && !question.drive.has_more() &&
+    return question.is_alone() && !question.is_timeless() && !question.drive.has_more() &&
            !(question.body.stiffness() > 0) && question.body.spring().none() && !question.body.walls();
 }
 

@@ -52,6 +52,8 @@ struct SteadyQuestion {
 
     bool is_timeless() const { return repeats.period == 0; }
     bool is_plain() const { return system->is_plain(); }
+    /// Returns whether the system is one body, named or not.
+    bool is_alone() const { return system->joints.size() == 1; }
     /// The excitation of the body of interest; with several bodies the part that depends on time only.
     const model::Excitation& load() const;
 };

@@ -333,6 +333,12 @@ test("a block without a spring that advances evenly is steady, alone and as the 
         equal(alone.amplitude, nil)
         equal(alone:explain(), named:explain())
     end
+    -- One that does not advance is one of a family in both.
+    local own, M = { I = 1, k = 0, Rd = 0.3, Re = 0.5 }, sine(1, 1)
+    for _, s in ipairs { system(own):steady { M = M }, system { bodies = { a = own } }:steady { M = { a = M } } } do
+        equal(s.unique, false)
+        says(s, "It is marginally stable", "It is one of a family")
+    end
     -- Also where a fast start hides the small advance.
     local saw, block = excitation.sawtooth { amplitude = 0.5, period = 3 }, system { I = 1, k = 0, Rd = 0.2 }
     equal(block:steady { M = saw, velocity0 = 3 }.status, "steady")
