@@ -160,9 +160,11 @@ void Guards::watch_slip(std::size_t joint) {
         zero = cheb::first_below(curve, -1, true, always);
     }
     if (how.leaving && none_leaves()) zero = -1;
-    // A zero beyond the end by no more than the rounding of the time is at the end.
+    // A zero beyond the end by no more than the rounding of the time is at the end. A joint that has just been released
+    // when the run ends has not returned to zero.
     const double late = segment_.to_the_end ? 64 * rounding * std::fabs(segment_.end) / segment_.h : 0;
-    if (!zero && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;
+    const bool departs = how.leaving && segment_.to_the_end && curve.slope(1) >= 0;
+    if (!zero && !departs && curve(1) <= std::max(curve.floor(), -curve.slope(1) * late)) zero = 1;
     // A slip that only touches zero counts at its lowest point.
     if (zero && *zero > -1 && *zero < 1) {
         if (const double lowest = curve.lowest_near(*zero); curve(lowest) >= -curve.floor()) zero = lowest;
