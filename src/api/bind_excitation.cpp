@@ -130,7 +130,7 @@ std::optional<model::Excitation> levels(lua::LuaFunction& function, double from,
 /// The function as native terms in a time span, one for each piece; empty if that fails.
 std::optional<model::Excitation> native_of(lua::LuaFunction& function, double from, double to) {
     constexpr int most_pieces = 100;
-    if (!(function.next_condition(from) < to)) {
+    if (!(function.next_condition(from) < no_end)) {
         auto terms = function.formula()->terms(from, to < no_end ? from + (to - from) / 2 : from);
         return terms && agree(*function.formula(), *terms, times_within(from, to)) ? terms : std::nullopt;
     }
@@ -140,14 +140,17 @@ std::optional<model::Excitation> native_of(lua::LuaFunction& function, double fr
     if (!(to < no_end)) return {};
     model::Excitation sum;
     double t = from;
-    for (int n = 0; t < to; ++n) {
-        const double next = std::min(function.next_condition(t), to);
+    // A run may be continued, so the piece that follows it belongs to the sum.
+    for (int n = 0; t < no_end; ++n) {
+        const bool beyond = t > to;
+        const double next = function.next_condition(t), end = beyond ? next : std::min(next, to);
         if (function.formula() == nullptr || n == most_pieces) return {};
-        const auto piece = function.formula()->terms(t, t + (next - t) / 2);
-        if (!piece || !agree(*function.formula(), *piece, times_within(t, next))) return {};
-        double until = model::never;
-        if (next < to) until = next;
-        sum = sum + piece->windowed(t, until);
+        const auto piece = function.formula()->terms(t, end < no_end ? t + (end - t) / 2 : t);
+        const bool known = piece && agree(*function.formula(), *piece, times_within(t, end));
+        if (!known && beyond && !sum.components().empty()) break;
+        if (!known) return {};
+        sum = sum + piece->windowed(t, next);
+        if (beyond) break;
         t = next;
     }
     return sum;

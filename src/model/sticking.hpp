@@ -57,10 +57,18 @@ inline Motion motion_from_standstill(const Lowered& system, double M, double the
     return pull.beyond > 0 ? pull.towards : Motion::stuck;
 }
 
-/// The friction torque on the mass: against the motion while moving, -(M - k theta) while stuck.
+/// The friction torque on the mass: against the motion while moving, -(M - k theta) while stuck. Where M jumps clearly
+/// beyond Re at the end of a run, the mass moves from there on.
 inline double friction_torque(const Lowered& system, Motion motion, double M, const State& state) {
     if (!system.dry()) return 0;
-    if (motion == Motion::stuck) return std::fma(system.stiffness(), state.theta, system.spring(state.theta) - M);
+    if (motion == Motion::stuck) {
+        constexpr double clearly = 1e-9;
+        const double pull_back = system.pull_back(state.theta);
+        const Pull pull = pull_at_rest(system, M, state.theta);
+        if (!(pull.beyond > clearly * (std::fabs(M) + std::fabs(pull_back))))
+            return std::fma(system.stiffness(), state.theta, system.spring(state.theta) - M);
+        motion = pull.towards;
+    }
     return 0.0 - (system.braking(motion) + system.friction_remainder(motion, state));  // 0 - x: never -0
 }
 

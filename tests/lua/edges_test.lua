@@ -160,4 +160,40 @@ test("what happens right at the end of a run is told by it, by every integrator,
     go(flat, { velocity0 = 1, t_end = 2, events = { { when = function(_, _, v) return v end } } }, general, "rest")
 end)
 
+test("at the end of a run the last row shows what follows a jump of M there, and nothing is said of the time behind it", function()
+    local own, jump = { I = 1, k = 1, Rd = 0.3, Re = 0.5 }, function(t) return t < 2 and 0 or 5 end
+    local one, several = system(own), system { bodies = { a = own, b = { I = 2 } }, links = { l = { "a", "b", Rd = 1 } } }
+    for _, method in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
+        for _, M in ipairs { excitation.step { at = 2, amplitude = 5 }, jump } do
+            local run = one:simulate { M = M, t_end = 2, integrator = method }
+            equal(run.friction[#run], -0.3, tostring(method))
+            near(run.acceleration[#run], 4.7, 1e-14)
+            equal(run.status, "stuck")
+        end
+    end
+    -- The link still holds 2/3 of 5 - 0.3.
+    several = several:with { links = { l = { Rd = 4 } } }
+    local run = several:simulate { M = { a = jump }, t_end = 2 }
+    equal(run.a.friction[#run], -0.3)
+    near(run.l.torque[#run], -2 / 3 * 4.7, 1e-14)
+    -- A function of Lua that has not jumped yet is not constant.
+    for T, status in pairs { [1.5] = "stuck", [2] = "stuck" } do equal(one:simulate { M = jump, t_end = T }.status, status) end
+    has_not(one:simulate { M = jump, t_end = 1.5 }:explain(), "constant", "stays at rest")
+end)
+
+test("a run that ends within roundings of a release does not tell that the contact stopped again", function()
+    local rig = system { bodies = { a = { I = 1 }, b = { I = 1, k = 0.4, Rd = 0.1, Re = 0.2 } }, links = { l = { "a", "b", Rd = 0.2, Re = 0.4 } } }
+    local M = { a = excitation.harmonic { amplitude = 0.8, omega = 0.8 } }
+    local events, tried = rig:simulate { M = M, t_end = 20 }.events, 0
+    for i, event in ipairs(events) do
+        while events[i + 1] and events[i + 1].t == event.t do i = i + 1 end
+        for roundings = 1, event.kind == "slip" and 16 or 0 do
+            local run = rig:simulate { M = M, t_end = event.t * (1 + roundings * 2.2e-16), times = {} }
+            assert(#run.events <= i, roundings)
+            tried = tried + 1
+        end
+    end
+    assert(tried > 20, tried)
+end)
+
 finish()

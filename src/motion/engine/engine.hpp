@@ -100,6 +100,7 @@ private:
     // The end (finish.cpp).
     bool last_instant();
     void finish();
+    void rows_at_end(SampledLoads& sampled);
     [[nodiscard]] std::optional<model::Outcome> at_rest();
     void explain_end();
     std::string state_driven_back();

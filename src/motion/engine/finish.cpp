@@ -25,7 +25,7 @@ void Engine::finish() {
     if (outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering) explain_end();
     const bool stands_at_now = outcome_ != Outcome::excitation_not_finite && outcome_ != Outcome::unresolved;
     SampledLoads sampled(mechanics_, segment_);
-    if (stands_at_now) recorder_->rows_at_end({now_, segment_, frames_->of(now_.mode), *balances_, sampled});
+    if (stands_at_now) rows_at_end(sampled);
     if (outcome_ == Outcome::reached_end) outcome_ = at_rest().value_or(outcome_);
     if (now_.mode.friction[0].way != Motion::stuck && !now_.mode.holds(0))
         result_.motion_at_stop = now_.mode.friction[0].way;
@@ -45,6 +45,19 @@ void Engine::finish() {
     if (breaks_.longest_delay() > 0 || !problem_.joined_elsewhere) carry->past = recorder_->history();
     for (const Signal& load : mechanics_.loads()) carry->controllers.push_back(load.memory());
     recorder_->finish(now_, contacts_, std::move(carry));
+}
+
+/// Writes the rows at the end. If a load jumps there, contacts may hold no longer, as they would tell in a longer run.
+void Engine::rows_at_end(SampledLoads& sampled) {
+    if (outcome_ != Outcome::reached_end || !segment_.to_break || !(now_.t.hi >= problem_.window.end)) {
+        recorder_->rows_at_end({now_, segment_, frames_->of(now_.mode), *balances_, sampled});
+        return;
+    }
+    const Evaluation by{mechanics_, *frames_, *balances_, projection_, conditions_->slides(),
+                        segment_,   room_,    pace_.unit};
+    Decision made = engine::decide(by, Now(now_), Contacts(contacts_), {.told = false});
+    const Now& then = made.good ? made.now : now_;
+    recorder_->rows_at_end({then, segment_, frames_->of(then.mode), *balances_, sampled});
 }
 
 /// Returns the outcome if nothing moves at the end, otherwise empty.
