@@ -122,4 +122,22 @@ test("a clutch that holds is rigid, sliding becomes unstable at the Hopf point o
     end
 end)
 
+test("the rest is found at an elastic stop, on a spring without a slope at theta0, and refused beyond a wall", function()
+    local stop, cubic = { lower = -0.2, upper = 0.1, stiffness = 20, damping = 0.3 }, spring.polynomial { [3] = 1 }
+    for _, case in ipairs {
+        { { I = 2, k = 4, walls = stop }, 0.3, 4 },
+        { { I = 2, k = 4, walls = stop }, 0.5, 24 },
+        { { I = 2, k = 4, walls = stop }, -1, 24 },
+        { { I = 2, k = 0, walls = stop }, -1, 20 },
+        { { I = 2, k = 0, spring = cubic }, -5, 3 * 5 ^ (2 / 3) },
+    } do
+        local own, M, stiffness = table.unpack(case)
+        local m = system { bodies = { a = own } }:modes { M = { a = M } }[1]
+        near(m.re ^ 2 + m.im ^ 2, stiffness / 2, 1e-9)
+    end
+    local walls = { lower = -0.2, upper = 0.1 }
+    near(system { I = 2, k = 4, walls = walls }:modes { M = 0.3 }[1].im ^ 2, 2, 1e-12)
+    refused { { "system { I = 2, k = 4, walls = { lower = -0.2, upper = 0.1 } }:modes { M = 0.5 }", "no rest between the walls" } }
+end)
+
 finish()

@@ -91,7 +91,6 @@ public:
         std::vector<double> offsets;
         frame_->offsets(belts_, mode_, offsets);
         for (std::size_t i = 0; i < bodies(); ++i) y_[bodies() + i] = offsets[i];
-        angles_ = y_;
         mechanics_.let_laws_act(mode_);
         // The deflections of bristles without slip and of slider springs follow their joints' angles.
         for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) free_.push_back(2 * bodies() + k);
@@ -118,20 +117,25 @@ public:
         Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * groups() + states());
         if (x.size() == 0) return holds();
         for (int i = 0; i < most; ++i) {
-            press();
+            press(state_at(x));
             const Eigen::VectorXd rest = at(x);
             if (!rest.allFinite()) return text::Error{"a torque is not finite beside the rest"};
             Eigen::MatrixXd slopes = slopes_at(x);
             slopes.middleCols(groups(), groups()).setZero();
+            const double size = rest.cwiseAbs().maxCoeff(), rounded = 64 * rounding * size / of_difference;
+            if (mechanics_.nonlinear()) slopes = (slopes.array().abs() > rounded).select(slopes, 0);
             const Eigen::VectorXd step = algebra::pseudo_inverse(slopes) * rest;
-            const double left = (rest - slopes * step).cwiseAbs().maxCoeff(), size = rest.cwiseAbs().maxCoeff();
+            const double left = (rest - slopes * step).cwiseAbs().maxCoeff();
             if (left > 1e-6 * size && size > nearly * torque_scale()) {
-                return text::Error{"there is no rest: nothing holds the bodies against what acts on them"};
+                if (!mechanics_.nonlinear())
+                    return text::Error{"there is no rest: nothing holds the bodies against what acts on them"};
+                x.head(groups()) += rest.head(groups());  // a nonlinear spring may begin without a slope
+                continue;
             }
             x -= step;
             x.segment(groups(), groups()).setZero();
             if (step.cwiseAbs().maxCoeff() <= nearly * std::max(1.0, x.cwiseAbs().maxCoeff())) {
-                y_ = state_at(x), angles_ = y_;
+                y_ = state_at(x);
                 return holds();
             }
         }
@@ -169,6 +173,8 @@ public:
     }
 
 private:
+    static constexpr double of_difference = 1e-3;  ///< the step of differences where torques are nonlinear
+
     [[nodiscard]] static Moment here(std::span<const double> y) { return {0, Side::after, y}; }
     double slip(std::size_t joint) const {
         return given_.system.joints[joint].sum(given_.drive.velocity0) - belts_[joint];
@@ -178,11 +184,11 @@ private:
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) most = std::max(most, mechanics_.size_of(j, here(y_)));
         return most;
     }
-    void press() {
+    void press(const std::vector<double>& y) {
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const auto& stops = given_.system.joints[j].stops;
             if (!stops) continue;
-            const double q = mechanics_.angle(j, angles_);
+            const double q = mechanics_.angle(j, y);
             mode_.presses[j] = q > stops->upper ? 1 : q < stops->lower ? -1 : 0;
         }
     }
@@ -221,12 +227,11 @@ private:
     }
     /// The Jacobian by differences of fourth order; a linear system uses wide ones, which lose no digits.
     [[nodiscard]] Eigen::MatrixXd slopes_at(const Eigen::VectorXd& x) {
-        constexpr double part = 1e-3;
         const bool wide = !mechanics_.nonlinear();
         Eigen::MatrixXd slopes(groups() + states(), x.size());
         for (Eigen::Index c = 0; c < x.size(); ++c) {
             const bool is_speed = c >= groups() && c < 2 * groups();
-            const double d = wide ? 1 : part * (is_speed ? std::min(1.0, slowest_) : 1);
+            const double d = wide ? 1 : of_difference * (is_speed ? std::min(1.0, slowest_) : 1);
             const auto moved = [&](double by) {
                 Eigen::VectorXd there = x;
                 there(c) += by;
@@ -246,8 +251,14 @@ private:
         frame_->multipliers(lacking, held);
         return held;
     }
-    /// Checks that the holding joints can hold.
+    /// Checks that the rest is between the walls, and that the holding joints can hold.
     [[nodiscard]] std::optional<text::Error> holds() {
+        for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+            const model::Joint& joint = given_.system.joints[j];
+            if (!joint.walls || !joint.walls->crossed_by(mechanics_.angle(j, y_))) continue;
+            return text::error("there is no rest between the walls{}, against which it leans",
+                               joint.name.empty() ? "" : " of " + joint.name);
+        }
         std::vector<double> held = held_at(y_);
         for (std::size_t j = 0; j < held.size(); ++j) {
             if (!mode_.holds(j) || mode_.rigid[j] != 0) continue;
@@ -274,7 +285,7 @@ private:
     Mechanics mechanics_;
     Mode mode_;
     std::optional<Frame> frame_;
-    std::vector<double> belts_, y_, angles_, loads_, torques_;
+    std::vector<double> belts_, y_, loads_, torques_;
     std::vector<std::size_t> free_;                           ///< indices of the independent states
     std::vector<std::pair<std::size_t, std::size_t>> bends_;  ///< indices of the other states, and their joints
     double slowest_ = model::never;
