@@ -193,6 +193,19 @@ std::vector<Acting> acting_in(const SteadyQuestion& question) {
     return all;
 }
 
+std::string timed_in(const SteadyQuestion& question) {
+    const std::vector<double> states = states_of(question);
+    const model::State initial{question.drive.theta0.front(), question.drive.velocity0.front()};
+    for (const Acting& acting : acting_in(question)) {
+        const auto& components = acting.what->components();
+        const auto timed = [&](const model::Component& c) { return timeless_from(c, initial, states) > 0; };
+        if (std::ranges::any_of(components, timed)) return acting.name;
+    }
+    const auto timed = [&](const model::OwnState& state) { return !is_timeless(*state.rate, initial, states); };
+    const auto found = std::ranges::find_if(question.drive.states, timed);
+    return found == question.drive.states.end() ? "" : "the rate of " + found->name;
+}
+
 std::optional<Repetition> repetition_of(const SteadyQuestion& question) {
     const std::vector<double> states = states_of(question);
     const model::State initial{question.drive.theta0.front(), question.drive.velocity0.front()};

@@ -156,6 +156,8 @@ struct Acting {
     const model::Excitation* what;
 };
 std::vector<Acting> acting_in(const SteadyQuestion& question);
+/// The name of an excitation or a rate that depends on t; empty if there is none. Functions are sampled.
+std::string timed_in(const SteadyQuestion& question);
 
 /// The common repetition of everything that drives the run: period 0 if nothing depends on time; none if unknown.
 /// Functions are sampled, as only the user knows their period.

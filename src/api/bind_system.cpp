@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "analysis/returns.hpp"
 #include "api/bind_simulate.hpp"
 #include "api/bodies.hpp"
 #include "api/cards.hpp"
@@ -18,6 +19,7 @@
 #include "lua/options.hpp"
 #include "lua/user_function.hpp"
 #include "lua/values.hpp"
+#include "model/controller.hpp"
 #include "model/laws/bristle.hpp"
 #include "motion/engine/modes.hpp"
 #include "source/describe.hpp"
@@ -160,17 +162,22 @@ int modes_of_system(lua_State* L) {
     const model::System& system = *handle;
     const lua::Options options(L, 2, modes_call);
     const model::Drive drive = asked_drive(L, options, system);
-    const auto check = [&](const model::Excitation& of, const char* name) {
-        if (of.components().empty() || of.has_feedback() || of.constant_from() <= 0) return;
-        options.fail(name,
-                     "{} must be constant, or depend on the motion alone: modes are those of a rest or of "
-                     "an even sliding",
-                     name);
-    };
-    for (const model::Excitation& load : drive.loads) check(load, "M");
-    for (const model::Excitation& belt : drive.belts) check(belt, "belt");
+    for (const model::Excitation& load : drive.loads) {
+        if (model::has_memory<model::SampledController>(load) || model::has_memory<model::DelayedController>(load))
+            options.fail("M", "modes do not include controllers that sample or wait: sys:simulate shows their motion");
+    }
     lua::CallState call(L);
     name_functions(call, system, drive);
+    const std::string timed =
+        analysis::timed_in({.system = handle, .drive = drive, .body = model::oscillator_at(system, 0).value()});
+    call.check();
+    if (!timed.empty()) {
+        const bool is_option = timed == "M" || timed == "belt";
+        options.fail(text::Error{.sentence = timed +
+                                             " must be constant, or depend on the motion alone: modes are those of a "
+                                             "rest or of an even sliding",
+                                 .option = is_option ? timed : ""});
+    }
     const auto modes = motion::engine::modes_beside(system, drive);
     call.check();
     if (!modes) options.fail(modes.error());

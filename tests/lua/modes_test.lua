@@ -93,15 +93,24 @@ test("modes use nonlinear springs and feedback linearised at the rest, and inclu
         { "system { I = 1, k = 0 }:modes { M = 1 }", "nothing holds the bodies" },
         { "system { I = 1, k = 0, Rd = 1 }:modes { M = 2 }", "would have to hold 2, but holds 1" },
     }
-    for _, M in ipairs { excitation.harmonic { omega = 1 }, excitation.step { at = 1 } } do
+    local function timed(t, theta) return theta * math.cos(t) end
+    for _, M in ipairs { excitation.harmonic { omega = 1 }, excitation.step { at = 1 }, timed } do
         refused { { "system { I = 1, k = 1 }:modes { M = M }", "M must be constant" } }
     end
+    local function brakes(_, _, velocity) return -velocity end
+    for _, M in ipairs { excitation.sampled(brakes, { every = 0.1 }), excitation.delayed(brakes, { by = 0.1 }) } do
+        refused { { "system { I = 1, k = 1 }:modes { M = M }", "do not include controllers" } }
+    end
+    refused { { "system { I = 1, k = 1, Rd = 1, normal = function(t) return 1 + t end }:modes { belt = 1 }", "normal must be constant" } }
 end)
 
 test("a clutch that holds is rigid, sliding becomes unstable at the Hopf point of the response, and states have modes", function()
     local rig = system { bodies = { a = { I = 1, k = 8 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 100 } } }
     local m = rig:modes()
     near(m[#m].im, 2, 1e-12)
+    local hysteresis = system { I = 1, k = 1, friction = friction.jenkins { stiffness = 3, Rd = 1 } }
+    near(hysteresis:modes()[1].im, 2, 1e-9)
+    near(hysteresis:modes { belt = 0.1 }[1].im, 1, 1e-9) -- its slider slides
     m = system { bodies = { a = { I = 1 }, b = { I = 3 } }, links = { rod = { "a", "b", k = 3 } } }:modes()
     near(m[#m].im, 2, 1e-12)
     local sys = system { I = 1, k = 1, C = 0.1, friction = friction.stribeck { Rd = 0.5, Re = 1, speed = 0.3 } }

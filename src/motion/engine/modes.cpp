@@ -103,7 +103,16 @@ public:
                 slowest_ = std::min(slowest_, std::fabs(belts_[joint]));
             }
         }
-        for (const Mechanics::Slider& slider : mechanics_.sliders()) bends_.emplace_back(slider.bend, slider.joint);
+        // On a belt sliders slide, and their springs keep their bend.
+        for (std::size_t s = 0; s < mechanics_.sliders().size(); ++s) {
+            const Mechanics::Slider& slider = mechanics_.sliders()[s];
+            if (slip(slider.joint) == 0) {
+                bends_.emplace_back(slider.bend, slider.joint);
+            } else {
+                mode_.sliders[s] = model::motion_of(slip(slider.joint));
+                y_[slider.bend] = model::sign_of(mode_.sliders[s]) * slider.limit / slider.stiffness;
+            }
+        }
     }
 
     std::size_t bodies() const { return mechanics_.bodies(); }
