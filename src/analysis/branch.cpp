@@ -50,6 +50,15 @@ bool has_complex_pair(const Eigen::MatrixXd& D) {
     return complex;
 }
 
+/// The number of complex multipliers outside of the unit circle.
+int growing_in_pairs(const Eigen::MatrixXd& D) {
+    int growing = 0;
+    for (const std::complex<double>& m : algebra::eigenvalues(D)) {
+        if (std::fabs(m.imag()) > 1e-6 && std::abs(m) > 1) ++growing;
+    }
+    return growing;
+}
+
 /// Returns whether a branch becomes symmetric: three branches meet at such a corner, and the symmetric one continues
 /// both ways.
 bool becomes_symmetric(const SteadyMotion& from, const SteadyMotion& to) {
@@ -591,6 +600,26 @@ private:
         return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
     }
 
+    /// A point between two others of which one has two more growing pairs: there, one pair grows. None if it is not
+    /// found.
+    std::optional<Spot> between_pairs(const Spot& a, const Spot& b) {
+        if (a.x.size() < 4) return {};
+        const int at_a = growing_in_pairs(a.derivative()), at_b = growing_in_pairs(b.derivative());
+        if (std::abs(at_a - at_b) != 4) return {};
+        const Vector begin = scaled(a), way = scaled(b) - begin;
+        constexpr int most = 12;
+        double low = 0, high = 1;
+        for (int i = 0; i < most; ++i) {
+            const double at = (low + high) / 2;
+            auto spot = correct(begin + at * way, way.normalized(), at < 0.5 ? a.slopes : b.slopes);
+            if (!spot) return {};
+            const int here = growing_in_pairs(spot->derivative());
+            if (here == (at_a + at_b) / 2) return spot;
+            (here == at_a ? low : high) = at;
+        }
+        return {};
+    }
+
     /// The zeros of the test functions between their anchors and this point, in order.
     std::vector<Special> specials_before(const Spot& spot, const Vector& ahead) {
         struct Kind {
@@ -609,14 +638,22 @@ private:
             constexpr double rounding = 1e-7;
             if (!(std::fabs(value) > rounding)) continue;
             const std::optional<Anchor> from = std::exchange(anchors_[i], Anchor{spot, value});
-            if (!from || from->value * value > 0 || (i == 1 && spot.x.size() < 2)) continue;
-            sharp_ = true;
-            auto zero = zero_between(from->spot, spot, from->value, value, f);
-            sharp_ = false;
-            // At a corner f jumps across zero.
-            if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(value), std::fabs(from->value))) continue;
-            if (i == 1 && !has_complex_pair(zero->derivative())) continue;
-            found.push_back({std::move(*zero), kind.kind});
+            if (!from || (i == 1 && spot.x.size() < 2)) continue;
+            const auto look = [&](const Spot& a, const Spot& b, double at_a, double at_b) {
+                sharp_ = true;
+                auto zero = zero_between(a, b, at_a, at_b, f);
+                sharp_ = false;
+                // At a corner f jumps across zero.
+                if (!zero || std::fabs(f(*zero)) > 1e-4 * std::max(std::fabs(at_a), std::fabs(at_b))) return;
+                if (i == 1 && !has_complex_pair(zero->derivative())) return;
+                found.push_back({std::move(*zero), kind.kind});
+            };
+            if (from->value * value < 0) {
+                look(from->spot, spot, from->value, value);
+            } else if (const auto middle = i == 1 ? between_pairs(from->spot, spot) : std::nullopt) {
+                look(from->spot, *middle, from->value, f(*middle));
+                look(*middle, spot, f(*middle), value);
+            }
         }
         const Vector here = scaled(spot);
         std::ranges::sort(found, [&](const Special& a, const Special& b) {
@@ -662,7 +699,20 @@ private:
         return true;
     }
 
+    /// Returns whether this fold undoes one at the same place, where rounding made the branch turn more than once; the
+    /// earlier one is then no fold either.
+    bool undoes_fold(const Spot& spot) {
+        constexpr double there = 1e-5;
+        const auto before = std::find_if(path_.points.rbegin(), path_.points.rend(),
+                                         [](const BranchPoint& point) { return point.kind == BranchKind::fold; });
+        if (before == path_.points.rend() || std::fabs(before->parameter - spot.p) > there * range_) return false;
+        if (std::fabs(before->motion.amplitude - spot.motion.amplitude) > there * greatest_.maxCoeff()) return false;
+        before->kind = BranchKind::point;
+        return true;
+    }
+
     void add(const Spot& spot, BranchKind kind) {
+        if (kind == BranchKind::fold && undoes_fold(spot)) kind = BranchKind::point;
         const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
         if (asked) {
             constexpr double there = 1e-6;

@@ -58,7 +58,7 @@ public:
         for (double left = (1 - 1e-6) * period_; left > 0 && arrival.finished; ++passages) {
             arrival = map(arrival.to, {}, 1);
             left -= arrival.time;
-            if (arrival.time < 1e-6 * period_) arrival.finished = false;  // rounding caused a passage at the start
+            if (arrival.time < shortest_passage * period_) arrival.finished = false;
         }
         if (!arrival.finished) first_.resize(0);
         passages_ = passages * periods;
@@ -69,6 +69,7 @@ public:
         const Returns::Return back = returns(here, section_)(x, {}, passages_);
         Lap lap{.to = back.to, .finished = back.finished};
         lap.time = back.time;
+        if (back.time < shortest_passage * period_) lap.finished = false;
         if (back.mode) lap.mode = std::make_shared<const HeldMode>(*back.mode);
         note_outcome(back.outcome, here.runs.contradiction());
         return lap;
@@ -232,6 +233,8 @@ private:
         if (half_) map.take_opposites();
         return map;
     }
+
+    static constexpr double shortest_passage = 1e-6;  // of a period: rounding causes a passage at the start
 
     const Family& family_;
     const motion::Monitor& monitor_;

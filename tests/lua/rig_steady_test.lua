@@ -243,6 +243,30 @@ long_test("a steady rotation is followed to where it begins to stick and slip", 
     end
 end)
 
+test("a response has two Hopf points where two modes of a squealing rig grow at nearly the same speed", function()
+    local rig = system { bodies = { a = { I = 1.87, k = 2.5, C = 0.148, friction = friction.stribeck { Rd = 0.5, Re = 0.9, speed = 0.2 } },
+        b = { I = 1.51, k = 0.6, C = 0.01 } }, links = { l = { "a", "b", k = 1.35, C = 0.02 } } }
+    local values = { 1, 0.9, 0.8, 0.7, 0.6, 0.5, 0.4, 0.3, 0.2 }
+    local c = rig:response { over = { v = values }, at = function(p) return { belt = { a = p.v } } end }
+    local points = c.points:filter(function(p) return p.kind == "hopf" end)
+    equal(#points, 2)
+    for i = 1, 2 do
+        local least = math.huge
+        for _, mode in ipairs(rig:modes { belt = { a = points.v[i] } }) do least = math.min(least, math.abs(mode.re)) end
+        near(least, 0, 1e-6)
+    end
+    assert(math.abs(points.v[1] - points.v[2]) > 1e-3)
+    equal(#c.points:filter(function(p) return p.kind == "fold" end), 1)
+end)
+
+test("a step past a fold to a motion that does not exist ends no response", function()
+    local rig = system { bodies = { a = { I = 1.9923107403099094, k = 1.8783629039637184, C = 0.1, friction = friction.stribeck { Rd = 0.5, Re = 0.9809387481776896, speed = 0.2760879220173598 } },
+        b = { I = 0.9225472886220519, k = 0.8, C = 0.05399380755190302 } }, links = { l = { "a", "b", k = 0.4510363011009, C = 0.010164974698937219 } } }
+    local c = rig:response { over = { v = vector.linspace(0.05, 2.5, 50) }, at = function(p) return { belt = { a = p.v } } end }
+    equal(table.concat(c.points.kind, " "), "fold hopf hopf")
+    near(c.jumps.v[1], c.points.v[1], 1e-9)
+end)
+
 test("the response of a chain has the columns of its bodies, and follows at", function()
     local c = chain(0.3):response { over = { omega = vector { 0.5, 1, 1.5 } }, -- at may make another system
         at = function(p) return { system = chain(), M = { a = sine(p.omega) } } end }
