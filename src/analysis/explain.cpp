@@ -826,7 +826,8 @@ private:
         };
         for (std::size_t j = 0; j < energies.size(); ++j) {
             const Work& work = energies[j].total.work;
-            note(work.input, of("M", j));
+            const bool moved = j < system_.bodies.size() && system_.bodies[j].moved;
+            note(work.input, of(moved ? "the prescribed motion" : "M", j));
             note(work.base, "the base under " + name(j));
             note(work.belt, of("the belt", j));
             note(-work.viscous, of("the damping", j));

@@ -83,6 +83,7 @@ private:
     bool end_at(double x, const Frame& frame, SampledLoads& sampled);
     bool arrive(double x, bool whole);
     bool sample_controllers();
+    void throw_along();
     bool ask_after_break();
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);

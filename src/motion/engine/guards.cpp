@@ -327,11 +327,20 @@ void Guards::watch_stop(std::size_t joint) {
     see(leaves(segment_.at_nodes(value, point_), value, half, rounded), pressed != 0 ? 0 : deep);
 }
 
+/// Returns whether other joints hold this one, so that its slip is only rounding. Belts and moved bodies may still turn
+/// what is held.
+bool Guards::is_kept(std::size_t joint) const {
+    if (!frame_.keeps(joint)) return false;
+    double fastest = this->fastest(joint);
+    for (std::size_t i = 0; i < n(); ++i) fastest = std::max(fastest, greatest(segment_.y[n() + i]));
+    return greatest(mechanics_.slips(joint, segment_.y, segment_.belts[joint])) <= 64 * rounding * fastest;
+}
+
 /// Watches whether a sticking slider reaches its limit, or the slip of a sliding one reverses. The direction of a
 /// contact with dry friction is that of its mode, which reverses by watch_slip() only.
 void Guards::watch_slider(std::size_t slider) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
-    if (frame_.keeps(own.joint)) return;  // the slip of a contact held by other joints is only rounding
+    if (is_kept(own.joint)) return;
     const Motion slides_to = now_.mode.sliders[slider];
     const bool known = now_.rubs(own.joint);
     const Motion moves_to = known ? now_.mode.friction[own.joint].way : Motion::stuck;

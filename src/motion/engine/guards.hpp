@@ -69,6 +69,7 @@ private:
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
     [[nodiscard]] double soon() const;
     [[nodiscard]] double fastest(std::size_t joint) const;
+    [[nodiscard]] bool is_kept(std::size_t joint) const;
     [[nodiscard]] double least_inertia(std::size_t joint) const;
     [[nodiscard]] double uncertain(std::size_t joint) const;
     [[nodiscard]] bool none_leaves() const;

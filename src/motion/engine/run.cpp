@@ -103,6 +103,7 @@ void Engine::begin() {
         if (!sample_controllers()) fail(Outcome::excitation_not_finite);
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
+        throw_along();
         // A belt or a moved body takes along from the start what a freewheel keeps from falling behind.
         const std::vector<double> caught = catch_freewheels(true);
         press_stops();
@@ -413,19 +414,23 @@ bool Engine::sample_controllers() {
     return good;
 }
 
+/// Gives bodies the velocity of those with a prescribed motion to which they are linked rigidly. Friction gives no
+/// impulse: what only sticks to a body that is thrown slips.
+void Engine::throw_along() {
+    if (problem_.hidden == 0) return;
+    Mode sticking = now_.mode;
+    for (std::size_t j = 0; j < told_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
+    project(now_.side());
+    now_.mode = std::move(sticking);
+}
+
 /// Decides contacts again after a break, at which loads, limits and belts may have jumped.
 bool Engine::ask_after_break() {
     if (!mechanics_.has_belts()) return decide(true);
     // A jump of a prescribed velocity throws all bodies that are linked to it rigidly.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
-    if (problem_.hidden > 0) {
-        // Friction gives no impulse: what only sticks to a body that is thrown slips.
-        Mode sticking = now_.mode;
-        for (std::size_t j = 0; j < told_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
-        project(now_.side());
-        now_.mode = std::move(sticking);
-    }
+    throw_along();
     for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
         const double v = now_.y[n() + body], jump = v - before[n() + body];
