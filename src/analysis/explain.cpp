@@ -206,7 +206,8 @@ private:
             both ? fmt::format("{:.5g} and {:.5g}", walls->lower, walls->upper)
                  : fmt::format("{:.5g}", std::isfinite(walls->lower) ? walls->lower : walls->upper));
         if (walls->is_elastic()) {
-            add(" that push back with stiffness {:.5g} and damping {:.5g}.", walls->stiffness, walls->damping);
+            add(" that push{} back with stiffness {:.5g} and damping {:.5g}.", both ? "" : "es", walls->stiffness,
+                walls->damping);
         } else if (walls->restitution == 0) {
             add(", where an impact stops the mass.");
         } else {
@@ -257,8 +258,9 @@ private:
                 system_.damping_ratio(), friction);
         } else {
             say("{} is a block {}", who, system_.spring().none() ? "without a spring" : "on a nonlinear spring");
-            if (system_.damping() > 0) add(", with viscous damping C = {:.5g}", system_.damping());
-            add("{}", friction);
+            add(", with ");
+            if (system_.damping() > 0) add("viscous damping C = {:.5g} and ", system_.damping());
+            add("{}.", friction_text());
         }
         tell_law();
         tell_walls();
@@ -388,8 +390,11 @@ private:
             const double rounded = 64 * std::numeric_limits<double>::epsilon() * std::fabs(begin.theta);
             const bool stayed =
                 begin.velocity == 0 && motion::stands_at_stop(run_) && std::fabs(begin.theta - end.theta) <= rounded;
-            say("{}", stayed ? "It stayed there: M and the spring are in balance."
-                             : "It moved in one direction all the time.");
+            // A linked body that starts from rest may stand until a contact closes.
+            const bool may_stand = !undisturbed_ && begin.velocity == 0;
+            say("{}", stayed      ? "It stayed there: M and the spring are in balance."
+                      : may_stand ? "It moved in one direction."
+                                  : "It moved in one direction all the time.");
             return;
         }
         const auto turns = static_cast<std::size_t>(std::ranges::count_if(
@@ -612,7 +617,7 @@ private:
     // ---- the end
 
     void tell_end() {
-        const bool over = still_ || (stretches_.back().stuck && constant_from_ <= run_.t_stop);
+        const bool over = still_ || (stretches_.back().stuck && excitation_.constant_from() <= run_.t_stop);
         const bool failed = !model::is_whole(run_.outcome);
         if (half_cycles_ > 0 && !over) {
             if (const auto motion = recurrence(events_)) {

@@ -304,4 +304,16 @@ test("a mass that a feedback holds at its jump stands from beginning to end", fu
     says(run, "It stayed there", "velocity = 0.")
 end)
 
+test("the story of a machine says of no body that it moved while its clutch was open, nor of a brake that the run is too short", function()
+    local later = function(t) return t >= 0.4 and 1 or 0 end
+    local run = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 1, normal = later } } }
+        :simulate { velocity0 = { a = 1 }, t_end = 1.5 }
+    says(run.b, "It moved in one direction. theta")
+    says(run.a, "It moved in one direction all the time. theta")
+    local brake = system { I = 1, k = 0, Rd = 3, normal = later }:simulate { velocity0 = 1, M = 0.5, t_end = 2 }
+    says(brake, "is a block without a spring, with dry friction that varies.")
+    has_not(brake:explain(), "too short")
+    says(system { I = 1, k = 1, walls = { lower = 0, stiffness = 9 } }:simulate { velocity0 = 1, t_end = 4 }, "a wall at theta = 0 that pushes back")
+end)
+
 finish()
