@@ -84,6 +84,14 @@ test("rigid walls of a moved body are refused: they could not stop it", function
     assert(system { bodies = { cam = moved, b = { I = 1 } } })
 end)
 
+test("a run ends where a wall stands in the way of a body that is linked rigidly to a moved one", function()
+    local rig = system { bodies = { a = { I = 2, walls = { lower = -1, upper = 0.5, restitution = 0.5 } }, b = { theta = function(t) return 0.5 * math.sin(t) end } },
+        links = { l = { "a", "b", ratio = 2, rigid = true } } }
+    local run = rig:simulate { t_end = 5 }
+    has(run.outcome, "a wall stands in the way of a moved body")
+    near(run.t_end, math.pi / 6, 1e-12)
+end)
+
 test("an angle that is not read is sampled at most run.gap apart", function()
     local times = {}
     local angle = function(t) times[#times + 1] = t return 0.3 * math.sin(2 * t) end

@@ -66,6 +66,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         stands();
         return goes_on();
     }
+    const Impulses::Thrown thrown = impulses_.along(joint, now_);
+    if (is_driven(joint, thrown)) return fail(Outcome::blocked);
     tell(EventKind::impact, joint);
     constexpr int most_low = 32, few_heights = 64;
     const double unresolved = 4 * rounding * (std::fabs(place) + own.size(now_.y));
@@ -77,7 +79,6 @@ bool Engine::hit(std::size_t joint, int wall) {
     const double nothing =
         std::max(faded_impact * walls_.fastest, 64 * rounding * mechanics_.speed_scale(joint, now_.y));
     const bool fades = before > 0 && before < nothing;
-    const Impulses::Thrown thrown = impulses_.along(joint, now_);
     const auto velocity = [&](double relative) { Impulses::apply(thrown, relative, now_); };
     const double energy = kinetic_energy();
     velocity(-wall * e * before);
@@ -124,6 +125,16 @@ bool Engine::hit(std::size_t joint, int wall) {
     const bool other = walls_.last_hit != std::pair(joint, wall);
     walls_.last_hit = {joint, wall};
     return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
+}
+
+/// Returns whether bodies with a prescribed motion drive the joint, so that no impulse changes its velocity.
+bool Engine::is_driven(std::size_t joint, const Impulses::Thrown& thrown) const {
+    constexpr double rounded = 1e-12;
+    double alone = 0;
+    for (const auto& [body, by] : joint_at(joint).of) {
+        if (const double inertia = mechanics_.own_inertia(body); inertia > 0) alone += by * by / inertia;
+    }
+    return problem_.hidden > 0 && !(thrown.lightness > rounded * alone);
 }
 
 /// Stops masses in a row at once that would strike each other ever more slowly, endlessly: all that lean after an
