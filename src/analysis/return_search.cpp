@@ -407,7 +407,8 @@ void ReturnSearch::cycle() {
         events += run->events.size();
         const VectorXd range = reach.range();
         most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
-        ranges.emplace_back(time, greatest(reach, n()));
+        // Bodies that go round and are driven faster and faster are told by their velocities.
+        ranges.emplace_back(time, greatest(reach, chart_.any_goes_round() ? 2 * n() : n()));
         largest_ = std::max(largest_, greatest(reach, 2 * n()));
         now = Runs::at_stop(*run);
         if (rests(*run, range, most_changed)) return;
@@ -468,7 +469,9 @@ void ReturnSearch::note_rest(const motion::Run& run, bool stands) {
 /// Completes the answer for a closed motion; returns false if it cannot be run, or no run stays on it and `any` is
 /// false.
 bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) {
-    if (!(found.period > 0)) return false;  // an immediate passage: the motion has nearly stopped
+    // An immediate passage: the motion has nearly stopped, or what is measured is only rounding.
+    constexpr double shortest_cycle = 1e-6;
+    if (!(found.period > shortest_cycle * pace())) return false;
     const auto D = map.derivative(found.x, found.mode, found.returns, 4);
     facts_.maps += 4 * found.returns * static_cast<int>(found.x.size());
     const bool forced = question().repeats.period > 0;

@@ -163,4 +163,12 @@ test("an event without an act changes neither the cycle nor its story", function
     equal(seen:explain(), plain:explain())
 end)
 
+test("a machine that is driven faster and faster grows, and has no limit cycle", function()
+    for _, case in ipairs { { { Rd = 0.5 }, 0.2 }, { { k = 0.5, C = 0.1 }, 0 } } do
+        local link, C = table.unpack(case)
+        local rig = system { bodies = { m = { I = 1 }, l = { I = 2, C = C } }, links = { c = merged(link, { "m", "l" }) } }
+        equal(rig:steady { M = { m = 2 } }.status, "grows")
+    end
+end)
+
 finish()
