@@ -69,6 +69,7 @@ private:
     bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
     bool is_bounded() const override { return false; }
     bool is_free() const override {
+        if (chart_.any_goes_round()) return true;
         return question().is_alone() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
                question().body.spring().none() && !question().body.walls();
     }
@@ -514,6 +515,7 @@ SteadyMotion ReturnSearch::found() {
     } else if (question().repeats.period > 0) {
         const auto last = search(question(), contracts(question()));
         if (last) look_beside(*last, question().periods);
+        if (facts_.status == SteadyStatus::grows && chart_.any_goes_round()) facts_.growth = model::never;
     } else {
         cycle();
     }
@@ -601,9 +603,13 @@ void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
 /// Completes the answer with a run that is one period from this moment.
 std::optional<VectorXd> ReturnSearch::complete_period(const FullState& from, motion::Run run, double period) {
     const Reach reach = reach_of_rows(run, chart_);
-    constexpr double nothing = 1e-11;
-    const bool moves = reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
-    const bool forced = question().repeats.period > 0, rotates = !moves && is_moving(from);
+    constexpr double nothing = 1e-11, creep = 1e-8;
+    const bool forced = question().repeats.period > 0;
+    // Bodies that slip a little less in each period come to a place where they adhere.
+    const bool creeps = forced && n() > 1 && run.outcome == model::Outcome::stuck_at_end && !run.events.empty() &&
+                        greatest(reach, n()) <= creep * farthest_;
+    const bool moves = !creeps && reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
+    const bool rotates = !moves && is_moving(from);
     if (!moves && !forced && question().settles < 0) return {};  // not a cycle: a further run decides how it ends
     facts_.outcome = run.outcome;
     facts_.status = moves || rotates ? SteadyStatus::steady : forced ? SteadyStatus::adheres : SteadyStatus::rest;

@@ -434,6 +434,13 @@ Reach reach_of_rows(const motion::Run& run, const Chart& chart) {
         reach.low = reach.low.cwiseMin(x);
         reach.high = reach.high.cwiseMax(x);
     }
+    // Turns are between the rows.
+    for (const model::Event& event : run.events) {
+        if (reach.low.size() == 0 || event.t < run.t_start || event.t > run.t_stop) continue;
+        const VectorXd x = chart.measured(vector_of(run.left->history->at(event.t))).head(2 * n);
+        reach.low.head(n) = reach.low.head(n).cwiseMin(x.head(n));
+        reach.high.head(n) = reach.high.head(n).cwiseMax(x.head(n));
+    }
     return reach;
 }
 

@@ -164,10 +164,14 @@ test("an event without an act changes neither the cycle nor its story", function
 end)
 
 test("a machine that is driven faster and faster grows, and has no limit cycle", function()
+    local sine = excitation.harmonic { amplitude = 1, omega = 1 }
     for _, case in ipairs { { { Rd = 0.5 }, 0.2 }, { { k = 0.5, C = 0.1 }, 0 } } do
         local link, C = table.unpack(case)
         local rig = system { bodies = { m = { I = 1 }, l = { I = 2, C = C } }, links = { c = merged(link, { "m", "l" }) } }
-        equal(rig:steady { M = { m = 2 } }.status, "grows")
+        for _, M in ipairs { excitation.constant { amplitude = 2 }, sine + 2 } do
+            has(rig:steady { M = { m = M } }, "grows: without bound")
+        end
+        equal(rig:steady { M = { m = sine } }.status, "steady")
     end
 end)
 

@@ -397,4 +397,16 @@ test("where no steady motion is found, the answer says whether the motion nearly
     says(irregular, "the motion is irregular, or it settles very slowly")
 end)
 
+test("other motions are listed once, whatever their phase, and bodies that creep to a place adhere there", function()
+    local one = system { I = 1, k = 1, walls = { lower = -0.5, upper = 0.5, stiffness = 50 }, Rd = 0.1 }
+    local s = one:steady { M = excitation.harmonic { amplitude = 0.4, omega = 1 } }
+    equal(s.periods, 3)
+    equal(#s.others, 1)
+    equal(s.others[1].periods, 1)
+    local rig = system { bodies = { a = { I = 1, k = 2, Rd = 0.3 }, b = { I = 2, k = 1, C = 0.1 } }, links = { c = { "a", "b", Rd = 0.5 } } }
+    s = rig:steady { M = { b = excitation.harmonic { amplitude = 0.2, omega = 1 } } }
+    equal(s.status, "adheres")
+    equal(#s.others, 0)
+end)
+
 finish()
