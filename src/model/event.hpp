@@ -83,7 +83,7 @@ struct Event {
     X(excitation_not_finite, "M failed or became infinite")                                               \
     X(not_a_function, "M depends on more than its arguments: evaluated again, it returned another value") \
     X(unresolved, "the motion is not resolved at this time: try a larger tolerance, or rk4")              \
-    X(blocked, "a wall stands in the way of a moved body, which nothing stops")                           \
+    X(blocked, "a moved body cannot move as prescribed: a wall, freewheel or rigid link is in its way")   \
     X(chattering, "switched endlessly at one time")
 
 enum class Outcome {

@@ -84,12 +84,18 @@ test("rigid walls of a moved body are refused: they could not stop it", function
     assert(system { bodies = { cam = moved, b = { I = 1 } } })
 end)
 
-test("a run ends where a wall stands in the way of a body that is linked rigidly to a moved one", function()
-    local rig = system { bodies = { a = { I = 2, walls = { lower = -1, upper = 0.5, restitution = 0.5 } }, b = { theta = function(t) return 0.5 * math.sin(t) end } },
-        links = { l = { "a", "b", ratio = 2, rigid = true } } }
-    local run = rig:simulate { t_end = 5 }
-    has(run.outcome, "a wall stands in the way of a moved body")
-    near(run.t_end, math.pi / 6, 1e-12)
+test("a run ends where something stands in the way of a moved body, or of one that a rigid link ties to it", function()
+    local cam, gear = { theta = function(t) return 0.5 * math.sin(t) end }, { "a", "b", ratio = 2, rigid = true }
+    for _, case in ipairs {
+        { { I = 2, walls = { lower = -1, upper = 0.5, restitution = 0.5 } }, { l = gear }, math.pi / 6 },
+        { { I = 2, friction = friction.freewheel {} }, { l = gear }, math.pi / 2 },
+        { { I = 2 }, { l = gear, k = { "a", "b", rigid = true } }, 0 },
+    } do
+        local own, links, ends = table.unpack(case)
+        local run = system { bodies = { a = own, b = cam }, links = links }:simulate { t_end = 5 }
+        has(run.outcome, "a moved body cannot move as prescribed")
+        near(run.t_end, ends, 1e-9)
+    end
 end)
 
 test("an angle that is not read is sampled at most run.gap apart", function()

@@ -70,6 +70,7 @@ private:
     // The loop (run.cpp).
     void begin();
     bool advance();
+    [[nodiscard]] bool strays_from_prescribed(const Frame& frame) const;
     bool take_plain_steps();
     bool solve(const Frame& frame);
     bool stands_for_good(const Frame& present);

@@ -162,6 +162,7 @@ bool Engine::advance() {
     choose(frame);
     if (!(segment_.h > 0)) return fail(Outcome::chattering);
     if (!solve(frame)) return outcome_ == Outcome::reached_end;
+    if (strays_from_prescribed(frame)) return fail(Outcome::blocked);
     sizes_ = solver_->sizes_at_start();
     if (mechanics_.nonlinear()) sizes_.find(mechanics_, segment_, now_.here());
     const Ending ending = watch(frame);
@@ -177,6 +178,23 @@ bool Engine::advance() {
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
                             solver_->noise_of_torques(segment_));
     return end_at(ending.x, frame, sampled) && handle(ending);
+}
+
+/// Returns whether joints that hold do not let moved bodies or rigid links keep to their motion on the stretch.
+bool Engine::strays_from_prescribed(const Frame& frame) const {
+    if (problem_.hidden == 0) return false;
+    constexpr double clearly = 1e-6;
+    std::vector<double> belts(mechanics_.joints()), offsets(n());
+    for (const std::size_t node : {node_count / 2, node_count - 1}) {
+        for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = now_.mode.holds(j) ? segment_.belts[j][node] : 0;
+        frame.offsets(belts, now_.mode, offsets);
+        for (std::size_t j = 0; j < belts.size(); ++j) {
+            if (now_.mode.rigid[j] == 0) continue;
+            const double size = joint_at(j).size(offsets) + std::fabs(belts[j]);
+            if (std::fabs(joint_at(j).sum(offsets) - belts[j]) > clearly * size) return true;
+        }
+    }
+    return false;
 }
 
 /// Takes steps without events, which need no segment.
