@@ -38,6 +38,25 @@ test("bounces between walls without a gap end the run", function()
     has(caught.outcome, "endlessly at one time")
 end)
 
+test("a belt or a prescribed velocity that jumps at the end of a run has not yet moved what sticks to it", function()
+    local function speed(t) return t % 3 < 1.5 and 0.2 or -0.1 end
+    local body = { I = 2, k = 0.1, C = 1, Rd = 2 }
+    local cases = {
+        { system(body), { belt = speed, velocity0 = 0.2 }, function(run) return run.velocity end },
+        { system { bodies = { a = { velocity = speed }, b = body }, links = { l = { "a", "b", rigid = true } } },
+            { velocity0 = { b = 0.2 } }, function(run) return run.b.velocity end },
+    }
+    for _, case in ipairs(cases) do
+        local sys, task, velocity = table.unpack(case)
+        local begun = sys:simulate(merged(task, { t_end = 1.5 }))
+        near(velocity(begun)[#begun.t], 0.2, 1e-15)
+        near(begun:energy().total.error, 0, 1e-14)
+        local whole, rest = sys:simulate(merged(task, { t_end = 4 })), begun:continue { t_end = 4 }
+        near(velocity(rest)[#rest.t], velocity(whole)[#whole.t], 1e-13)
+        equal(#rest.events, #whole.events)
+    end
+end)
+
 test("a belt that requires exactly the torque that sticking holds carries the mass", function()
     for _, belt in ipairs { excitation.ramp { slope = 0.5 }, function(t) return 0.5 * t end } do
         for _, engine in ipairs(both_engines) do

@@ -48,8 +48,10 @@ void Engine::finish() {
 }
 
 /// Writes the rows at the end. If a load jumps there, contacts may hold no longer, as they would tell in a longer run.
+/// Where a belt jumps, what sticks to it has still its velocity before.
 void Engine::rows_at_end(SampledLoads& sampled) {
-    if (outcome_ != Outcome::reached_end || !segment_.to_break || !(now_.t.hi >= problem_.window.end)) {
+    const bool is_break = segment_.to_break && now_.t.hi >= problem_.window.end;
+    if (outcome_ != Outcome::reached_end || !is_break || mechanics_.has_belts()) {
         recorder_->rows_at_end({now_, segment_, frames_->of(now_.mode), *balances_, sampled});
         return;
     }
