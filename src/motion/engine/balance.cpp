@@ -122,7 +122,7 @@ Moment just_beside(const Moment& at, const std::vector<double>& slip, const Near
         move(y[slip.size() + i], model::sign_of(there.way) * slip[i], there.speed);
     }
     constexpr double clearly = 1e3;
-    return {at.t, at.side, y, true, there.speed > 0 ? clearly * there.speed : model::never};
+    return {at.t, at.side, y, true, there.speed > 0 ? clearly * std::max(there.speed, there.gained) : model::never};
 }
 
 double excess(const Mechanics& mechanics, std::size_t joint, const Balance& balance, const Mode& mode, const Moment& at,

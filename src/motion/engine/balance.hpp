@@ -69,6 +69,7 @@ struct Nearby {
     model::Motion side;         ///< side to which the angle differs
     model::Motion way;          ///< direction of the slip; stuck: slip 0
     double far = 0, speed = 0;  ///< differences of angle and slip
+    double gained = 0;          ///< greatest speed that joints at standstill may have gained since
 };
 
 /// Returns the velocity of each body if this joint slips at speed 1 and all others hold. If these do not let it slip,

@@ -57,7 +57,8 @@ private:
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     [[nodiscard]] bool stands(std::size_t joint) const;
-    std::optional<BothSides> both_sides(std::size_t joint, std::optional<double> speed, const Moment& here);
+    std::optional<BothSides> both_sides(std::size_t joint, std::optional<double> speed, const Moment& here,
+                                        double gained = 0);
     void let_go(const Worst& worst);
     Ways take_back();
     void settle_at_limit(std::size_t joint);
@@ -251,8 +252,11 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
     std::vector<double> soon = now().y, rates(mechanics_.states());
     const std::size_t n = mechanics_.bodies();
     mechanics_.rates(now().here(), rates.data(), &mode());
+    double gained = 0;
     for (std::size_t i = 0; i < n; ++i) {
-        soon[i] += later * by_.unit * soon[n + i], soon[n + i] += later * by_.unit * found_.accelerations[i];
+        const double change = later * by_.unit * found_.accelerations[i];
+        soon[i] += later * by_.unit * soon[n + i], soon[n + i] += change;
+        gained = std::max(gained, std::fabs(change));
     }
     for (std::size_t k = 0; k < rates.size(); ++k) soon[2 * n + k] += later * by_.unit * rates[k];
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
@@ -262,7 +266,7 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         // In motion, rounding determines the side of the loads at slip 0.
         how.driven_back = speed != rounded && stands(j) && !(of_place && of_place->drive_back);
         if (how.driven_back) both = both_sides(j, speed, now().here());
-        const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon});
+        const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon}, gained);
         if (!then || !then->drive_back) continue;
         if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
         if (how.driven_back && !may_go) both->beyond = std::min(otherwise, both->beyond - 64 * rounding * size(j));
@@ -282,18 +286,20 @@ bool Decider::stands(std::size_t j) const {
 
 /// Returns the loads on both sides of slip 0 if a speed is given, otherwise on both sides of the present angle; empty
 /// if a value is not finite.
-std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here) {
+std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here,
+                                                      double gained) {
     BothSides both;
     const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
-        const Moment at = just_beside(here, slip, {side, speed ? side : Motion::stuck, 0, speed.value_or(0)}, y);
+        const Motion way = speed ? side : Motion::stuck;
+        const Moment at = just_beside(here, slip, {side, way, 0, speed.value_or(0), gained}, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
         (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
-        Motion way = Motion::stuck;
-        const double beyond = excess(mechanics_, j, beside, mode(), now().here(), way);
-        if (way == side && beyond > both.beyond) both.beyond = beyond, both.towards = side;
+        Motion towards = Motion::stuck;
+        const double beyond = excess(mechanics_, j, beside, mode(), now().here(), towards);
+        if (towards == side && beyond > both.beyond) both.beyond = beyond, both.towards = side;
     }
     both.drive_back = both.backward - both.forward > clearly_jumps * size(j);
     return both;

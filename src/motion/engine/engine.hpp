@@ -146,6 +146,7 @@ private:
     };
     [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
     bool hit(std::size_t joint, int wall);
+    void lean(std::size_t joint, int wall);
     [[nodiscard]] bool is_driven(std::size_t joint, const Impulses::Thrown& thrown) const;
     [[nodiscard]] std::vector<char> stop_row(std::size_t joint, int wall, bool fades);
     void leave_walls(const std::vector<char>& stopped);

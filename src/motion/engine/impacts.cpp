@@ -110,14 +110,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     add_work_of_moved(joint, energy, lost);
     if (rests) wait(rest);
     leave_walls(stop_row(joint, wall, fades));
-    if (rests) {
-        now_.mode.leans[joint] = wall;
-        if (now_.rubs(joint)) {
-            Slipping& how = now_.mode.friction[joint];
-            if (how.way != Motion::stuck) contacts_.of[joint].arrived = how.way;
-            how.leaving = false;
-        }
-    }
+    if (rests) lean(joint, wall);
     if (!restart_contacts(Because::impact, joint)) return false;
     if (rests) stands();
     // Bounces at one wall end by themselves; those between several walls need not, or only after very many.
@@ -125,6 +118,15 @@ bool Engine::hit(std::size_t joint, int wall) {
     const bool other = walls_.last_hit != std::pair(joint, wall);
     walls_.last_hit = {joint, wall};
     return !other || !chatter_.too_often(now_.t.hi, most_to_and_fro) || fail(Outcome::chattering);
+}
+
+/// Makes a joint lean on a wall against which it has come to rest.
+void Engine::lean(std::size_t joint, int wall) {
+    now_.mode.leans[joint] = wall;
+    if (!now_.rubs(joint)) return;
+    Slipping& how = now_.mode.friction[joint];
+    if (how.way != Motion::stuck) contacts_.of[joint].arrived = how.way;
+    how.leaving = false;
 }
 
 /// Returns whether bodies with a prescribed motion drive the joint, so that no impulse changes its velocity.

@@ -357,7 +357,8 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         if (friction.normal) contact.normal = Signal(*friction.normal, &asking);
         contact.varies |= !friction.is_constant();
         nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
-                      friction.law.depends_on_speed() || !joint.spring.none() || joint.stops;
+                      friction.law.depends_on_speed() || !joint.spring.none() || joint.stops ||
+                      !friction.sliders.empty();
         const auto* user = friction.law.as<laws::UserLaw>();
         const auto slip = [this, j](const Moment& at) { return velocity(j, at.y) - belt(j, at.t, at.side); };
         if (friction.function != nullptr) {
@@ -368,26 +369,21 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const auto* spring = joint.spring.as<model::springs::UserSpring>();
         if (spring != nullptr && spring->function->has_pieces()) {
             const auto turned = [this, j](const Moment& at) { return angle(j, at.y); };
-            const auto speed = [this, j](const Moment& at) {
-                const double v = std::fabs(velocity(j, at.y));
-                return v > 16 * rounding * speed_scale(j, at.y) ? v : 0;
-            };
+            const auto speed = [this, j](const Moment& at) { return clear_speed(j, at.y); };
             contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, speed});
         }
         contact.bristle = friction.bending();
-        const bool bends = contact.bristle != nullptr;
+        const bool bends = contact.bristle != nullptr, steady = !friction.law.depends_on_speed();
         contact.native = friction.is_constant() && !contact.law && friction.sliders.empty();
-        nonlinear_ |= !friction.sliders.empty();
         const auto varies = [](const Signal& limit) { return !limit.none(); };
         contact.may_open =
             !contact.normal.none() || std::all_of(contact.sliding.begin(), contact.sliding.end(), varies);
-        if (contact.native && !friction.law.depends_on_speed() && !bends) {
+        if (contact.native && steady && !bends) {
             const auto& law = friction.law;
             contact.constant = {{law.holding(Motion::backward), law.holding(Motion::forward)},
                                 {law.sliding(Motion::backward, 0), law.sliding(Motion::forward, 0)}};
         }
-        all_linear_ =
-            all_linear_ && contact.native && !friction.law.depends_on_speed() && joint.spring.none() && !joint.stops;
+        all_linear_ = all_linear_ && contact.native && steady && joint.spring.none() && !joint.stops;
         contacts_.push_back(std::move(contact));
         if (bends) bristles_.push_back(j);
         rubs_.push_back(friction.none() || bends ? 0 : 1);
@@ -447,6 +443,11 @@ double Mechanics::angle(std::size_t joint, std::span<const double> y) const {
 
 double Mechanics::velocity(std::size_t joint, std::span<const double> y) const {
     return angle(joint, y.subspan(bodies()));
+}
+
+double Mechanics::clear_speed(std::size_t joint, std::span<const double> y) const {
+    const double speed = std::fabs(velocity(joint, y));
+    return speed > 16 * rounding * speed_scale(joint, y) ? speed : 0;
 }
 
 double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) const {

@@ -255,6 +255,8 @@ public:
     double velocity(std::size_t joint, std::span<const double> y) const;
     /// Returns the size of the velocities whose sum is the joint's velocity; its rounding is relative to this.
     double speed_scale(std::size_t joint, std::span<const double> y) const;
+    /// Returns the joint's speed; 0 if it may be rounding.
+    double clear_speed(std::size_t joint, std::span<const double> y) const;
 
     double next_break(double t) const;
     double view(double t, double spacing) const;
