@@ -274,7 +274,7 @@ bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, 
 bool Slides::keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     if (sliding_.empty()) return false;
-    // What moving belts carry along: the speed of each body, and its rate.
+    // The speed at which moving belts carry each body along, and its rate.
     std::vector<double> belts(mechanics_.joints()), rates(belts), carried(n), faster(n);
     for (std::size_t j = 0; j < belts.size() && mechanics_.has_belts(); ++j) {
         if (mechanics_.has_belt(j)) belts[j] = mechanics_.belt(j, at.t, at.side), rates[j] = belt_rate(j, at);
