@@ -376,8 +376,9 @@ private:
             add(".");
         }
         if (first.stuck && !first.ended_by) {
-            say("Nothing {}moved it until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
-                at(run_.t_stop));
+            const bool carried = is_link_ || (on_belt_ && !at_wall(y.theta));
+            say("Nothing {}{} it{} until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
+                carried ? "made" : "moved", carried ? " slip" : "", at(run_.t_stop));
             tell_stillness();
         }
         end_paragraph();

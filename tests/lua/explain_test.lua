@@ -114,6 +114,11 @@ test("outputs that are held, and relays of the motion, cannot hide a pulse", fun
     end
 end)
 
+test("a mass that a belt carries all the time is not said to be unmoved", function()
+    local carried = system { I = 2, k = 0.1, C = 1, Rd = 2 }:simulate { belt = 0.2, velocity0 = 0.2, t_end = 1.5, dt = 1 }
+    says(carried, "stuck to the belt. Nothing made it slip until the end of the run, t = 1.5.")
+end)
+
 test("a belt under a body without dry friction is said to have no effect", function()
     local smooth = system { I = 1, k = 4 }:simulate { theta0 = 1, t_end = 5, belt = 1 }
     says(smooth, "The belt has no effect, as there is no dry friction.", "It turned at theta = -1")
