@@ -57,8 +57,13 @@ private:
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     [[nodiscard]] bool stands(std::size_t joint) const;
-    std::optional<BothSides> both_sides(std::size_t joint, std::optional<double> speed, const Moment& here,
-                                        double gained = 0);
+    /// A motion beside slip 0: the velocity of each body at slip 1, and the slip; none: the angle differs instead.
+    struct Probe {
+        const std::vector<double>& slip;
+        std::optional<double> speed;
+        double gained = 0;  ///< greatest speed that joints at standstill may have gained since
+    };
+    std::optional<BothSides> both_sides(std::size_t joint, const Probe& probe, const Moment& here);
     void let_go(const Worst& worst);
     Ways take_back();
     void settle_at_limit(std::size_t joint);
@@ -259,14 +264,15 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         gained = std::max(gained, std::fabs(change));
     }
     for (std::size_t k = 0; k < rates.size(); ++k) soon[2 * n + k] += later * by_.unit * rates[k];
+    const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
     for (const double speed : {std::numeric_limits<double>::min(), rounded}) {
-        auto both = both_sides(j, speed, now().here());
+        auto both = both_sides(j, {slip, speed}, now().here());
         if (!both || !both->drive_back) continue;
-        const auto of_place = both_sides(j, {}, now().here());
+        const auto of_place = both_sides(j, {slip, {}}, now().here());
         // In motion, rounding determines the side of the loads at slip 0.
         how.driven_back = speed != rounded && stands(j) && !(of_place && of_place->drive_back);
-        if (how.driven_back) both = both_sides(j, speed, now().here());
-        const auto then = both_sides(j, speed, {now().t.hi + later * by_.unit, Side::at, soon}, gained);
+        if (how.driven_back) both = both_sides(j, {slip, speed}, now().here());
+        const auto then = both_sides(j, {slip, speed, gained}, {now().t.hi + later * by_.unit, Side::at, soon});
         if (!then || !then->drive_back) continue;
         if (how.driven_back && !(otherwise > (may_go ? -near_limit * size(j) : 0))) break;
         if (how.driven_back && !may_go) both->beyond = std::min(otherwise, both->beyond - 64 * rounding * size(j));
@@ -284,17 +290,14 @@ bool Decider::stands(std::size_t j) const {
     });
 }
 
-/// Returns the loads on both sides of slip 0 if a speed is given, otherwise on both sides of the present angle; empty
-/// if a value is not finite.
-std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, std::optional<double> speed, const Moment& here,
-                                                      double gained) {
+/// Returns the loads on both sides of slip 0, or of the present angle; empty if a value is not finite.
+std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, const Probe& probe, const Moment& here) {
     BothSides both;
-    const std::vector<double> slip = slip_alone(mechanics_, mode(), j);
     std::vector<double> y;
     for (const Motion side : {Motion::backward, Motion::forward}) {
         Balance beside;
-        const Motion way = speed ? side : Motion::stuck;
-        const Moment at = just_beside(here, slip, {side, way, 0, speed.value_or(0), gained}, y);
+        const Motion way = probe.speed ? side : Motion::stuck;
+        const Moment at = just_beside(here, probe.slip, {side, way, 0, probe.speed.value_or(0), probe.gained}, y);
         if (!by_.balances.at_present(at, now(), mode(), frame(), by_.last, beside)) return {};
         (side == Motion::forward ? both.forward : both.backward) = -beside.holding[j];
         Motion towards = Motion::stuck;
