@@ -337,6 +337,27 @@ moves("two loads of one link that slide by turns follow an independent time-step
         end,
     }, theta0 = { a = -1.05, b = -0.294 }, t_end = 8 }, { ["a.theta"] = -1.449599902, ["b.theta"] = -1.133706203, within = 3e-9 })
 
+test("a belt that only touches velocity 0 carries on as one that hardly misses it", function()
+    local loads = { speed = function(t, x, v) return v > 0 and -0.3 or 0.3 end, place = function(t, x) return x > 0 and -0.3 or 0.3 end }
+    for _, way in ipairs { 1, -1 } do
+        local function belt(by) return function(t) return way * (0.5 + by + 0.5 * math.cos(t)) end end
+        for name, M in pairs(loads) do
+            for _, Rd in ipairs { 0.1, 0.2, 0.5, 1 } do
+                local sys = system { I = 1, k = 0.5, Rd = Rd }
+                local one, other = sys:simulate { belt = belt(0), M = M, t_end = 12 }, sys:simulate { belt = belt(1e-7), M = M, t_end = 12 }
+                assert(one.status ~= "failed", name .. ": " .. one.outcome)
+                near(one.theta, other.theta, 1e-5)
+            end
+        end
+    end
+    -- A freewheel on such a body takes a load along again.
+    local function turned(by)
+        return system { bodies = { disc = { velocity = function(t) return 0.5 + by + 0.5 * math.cos(0.7 * t) end }, load = { I = 1, k = 1, Rd = 0.1 } },
+            links = { wheel = { "disc", "load", friction = friction.freewheel { Rd = 0.2 } } } }:simulate { t_end = 20 }
+    end
+    near(turned(0).load.theta, turned(1e-7).load.theta, 1e-5)
+end)
+
 test("functions that jump at one surface have one share, in loads and in rates", function()
     local function go(rate, start, z)
         expect(swing, { M = function(_, theta, v) return -3 * sgn(v + 2 * theta) end, states = { z = { start = start, rate = rate } },

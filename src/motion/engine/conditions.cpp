@@ -174,7 +174,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
         if (of_leaving != 0 && !forgotten_ && !starts_with_belt && decide_clearly(function, at, asked)) return;
         function.decide({t, at.side, y}, asked);
-        if (asked != 0 && !forgotten_) decide_by_rate(function, at, asked);
+        if (asked != 0 && !forgotten_) decide_by_rate(function, at, mode, asked);
     });
     forgotten_ = false;
 }
@@ -218,7 +218,7 @@ bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint
 
 /// Decides conditions anew that depend on a velocity that a contact holds or just lets go, if they pass zero right now
 /// for the held velocity: by their values a little later.
-void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again) {
+void Conditions::decide_by_rate(Piecewise& function, const Moment& at, const Mode& mode, std::uint64_t again) {
     constexpr double little_later = 1e-9, next_to_none = 1e-3;
     if (function.is_friction() || function.is_spring() || function.slides() || function.conditions().empty()) return;
     const std::size_t n = mechanics_.bodies();
@@ -228,8 +228,9 @@ void Conditions::decide_by_rate(Piecewise& function, const Moment& at, std::uint
     }
     function.margins({at.t, at.side, y}, margins);
     const double h = little_later * unit_;
-    for (std::size_t i = 0; i < n; ++i) y[i] += h * y[n + i];
-    const Moment later{at.t + h, at.side, y};
+    const bool carried = mechanics_.has_belts();
+    for (std::size_t i = 0; i < n && !carried; ++i) y[i] += h * y[n + i];
+    const Moment later = carried ? slides_.carry_on(at, mode, y) : Moment{at.t + h, at.side, y};
     function.margins(later, then);
     for (std::size_t c = 0; c < margins.size(); ++c) {
         const bool passes = std::fabs(margins[c]) < next_to_none * std::fabs(then[c]);

@@ -93,7 +93,7 @@ private:
                                                   const std::vector<double>& margins, double later,
                                                   const std::vector<double>& more) const;
     [[nodiscard]] bool decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked);
-    void decide_by_rate(Piecewise& function, const Moment& at, std::uint64_t again);
+    void decide_by_rate(Piecewise& function, const Moment& at, const Mode& mode, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
     bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
         if (function.is_friction() || function.is_spring()) return function.is_spring();

@@ -115,6 +115,9 @@ std::vector<std::size_t> redundant_rigid(const model::System& system);
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high);
 
+/// When a belt that turns, as where it only touches velocity 0, has clearly moved on, in time units of the motion.
+inline constexpr double after_touch = 1e-6;
+
 class Mechanics : text::NotCopied {
 public:
     Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);

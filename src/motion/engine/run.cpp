@@ -502,9 +502,17 @@ void Engine::find_belt_slopes(std::optional<double> x) {
     now_.belt_slopes.assign(mechanics_.joints(), {0, 0});
     for (std::size_t j = 0; mechanics_.has_belts() && j < now_.belt_slopes.size(); ++j) {
         if (!mechanics_.has_belt(j)) continue;
-        now_.belt_slopes[j] = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
-                                            solver_->blurred_by_belts(segment_) / balances_->inertia()}
-                                : mechanics_.belt_slope(j, towards(now_.t.hi, now_.side()), belt_stretch * pace_.unit);
+        BeltSlope& slope = now_.belt_slopes[j];
+        slope = x ? BeltSlope{cheb::value(cheb::fit(segment_.belt_rates[j]), *x),
+                              solver_->blurred_by_belts(segment_) / balances_->inertia()}
+                  : mechanics_.belt_slope(j, towards(now_.t.hi, now_.side()), belt_stretch * pace_.unit);
+        if (slope.sure() != 0) continue;
+        // A belt that turns right now moves on by its curvature.
+        constexpr double clearly = 1024 * rounding;
+        const double later = after_touch * pace_.unit;
+        const double v = mechanics_.belt(j, now_.t.hi, now_.side()),
+                     then = mechanics_.belt(j, now_.t.hi + later, Side::at);
+        if (std::fabs(then - v) > clearly * std::fabs(then)) slope = {(then - v) / later, 0};
     }
 }
 

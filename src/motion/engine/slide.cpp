@@ -204,7 +204,7 @@ double Slides::belt_rate(std::size_t joint, const Moment& at) const {
 double Slides::share(const Sliding& of, const Moment& at) const {
     const auto [own, beyond] = both(of, at);
     // If contacts hold the velocities of the surface, the loads do not move the motion off it: one side is used.
-    if (!Sides{own, beyond}.differ()) return own.rate < 0 ? 1 : 0;
+    if (!Sides{own, beyond}.differ()) return falls_if_held(of, own, at) ? 1 : 0;
     return (own.rate + way_back / unit_ * own.margin) / (own.rate - beyond.rate);
 }
 
@@ -271,16 +271,45 @@ bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, 
     return moves + std::fabs(speed) / unit_ <= rounded;
 }
 
+std::vector<double> Slides::carried_by_belts(const Mode& mode, const Moment& at) const {
+    std::vector<double> belts(mechanics_.joints()), carried(mechanics_.bodies());
+    if (!mechanics_.has_belts()) return carried;
+    for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = mechanics_.belt(j, at.t, at.side);
+    frames_.of(mode).offsets(belts, mode, carried);
+    return carried;
+}
+
+Moment Slides::carry_on(const Moment& at, const Mode& mode, std::vector<double>& y) const {
+    const Moment later{at.t + after_touch * unit_, at.side, y};
+    const std::vector<double> from = carried_by_belts(mode, at), to = carried_by_belts(mode, later);
+    const std::size_t n = from.size();
+    for (std::size_t i = 0; i < n; ++i) y[i] += after_touch * unit_ * y[n + i], y[n + i] += to[i] - from[i];
+    return later;
+}
+
+/// Returns whether the own side's margin of a motion that contacts hold falls.
+bool Slides::falls_if_held(const Sliding& of, const Side& own, const Moment& at) const {
+    if (!mechanics_.has_belts()) return own.rate < 0;
+    std::vector<double> soon(at.y.begin(), at.y.end());
+    const Moment later = carry_on(at, mode_, soon);
+    const std::size_t n = mechanics_.bodies();
+    for (std::size_t k = 2 * n; k < soon.size(); ++k) soon[k] += (later.t - at.t) * own.rates[k];
+    std::vector<double> rates = own.rates;
+    std::copy_n(soon.begin() + static_cast<std::ptrdiff_t>(n), n, rates.begin());
+    const auto [then, its_rate] = of.function->margin(later, rates);
+    return of.of_place ? its_rate < 0 : then < of.function->margin(at, own.rates).first;
+}
+
 bool Slides::keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     if (sliding_.empty()) return false;
-    // The speed at which moving belts carry each body along, and its rate.
-    std::vector<double> belts(mechanics_.joints()), rates(belts), carried(n), faster(n);
-    for (std::size_t j = 0; j < belts.size() && mechanics_.has_belts(); ++j) {
-        if (mechanics_.has_belt(j)) belts[j] = mechanics_.belt(j, at.t, at.side), rates[j] = belt_rate(j, at);
+    const std::vector<double> carried = carried_by_belts(mode, at);
+    std::vector<double> rates(mechanics_.joints()), faster(n);
+    for (std::size_t j = 0; j < rates.size(); ++j) {
+        if (mechanics_.has_belt(j)) rates[j] = belt_rate(j, at);
     }
-    if (mechanics_.has_belts()) frame.offsets(belts, mode, carried), frame.offsets(rates, mode, faster);
-    if (belts[joint] != 0 || rates[joint] != 0) return false;
+    if (mechanics_.has_belts()) frame.offsets(rates, mode, faster);
+    if (rates[joint] != 0 || mechanics_.belt(joint, at.t, at.side) != 0) return false;
     for (const auto& [body, by] : mechanics_.system().joints[joint].of) {
         if (carried[body] != 0 || faster[body] != 0) return false;
     }
@@ -558,8 +587,9 @@ void Slides::end_lost(const Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {
         const Sides sides = both(was, now.here());
         if (sides.differ()) continue;
+        const bool leaves = falls_if_held(was, sides.own, now.here());
         sliding_.erase(slide_of(*was.function));
-        was.each([&](Piecewise& each) { each.leave(sides.own.rate < 0 ? 1 : 0); });
+        was.each([&](Piecewise& each) { each.leave(leaves ? 1 : 0); });
         left_at_ = now.t.hi, left_ = was;
         was.tell(false, changes);
     }

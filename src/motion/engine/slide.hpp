@@ -48,6 +48,8 @@ public:
     /// Returns whether the slides hold the slip of a joint: whether it depends on what this frame holds and on surfaces
     /// that stand still, and on nothing that moves, such as a belt.
     [[nodiscard]] bool keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
+    /// Moves the bodies on until after_touch, with the velocities of those that belts carry along. Returns that moment.
+    Moment carry_on(const Moment& at, const Mode& mode, std::vector<double>& y) const;
     /// The rate of the slip of a joint in this mode, with functions evaluated at this very moment, not on their pieces.
     [[nodiscard]] double slip_rate(std::size_t joint, const Mode& mode, const Moment& at);
     /// Sets the mode of contacts to evaluate with.
@@ -86,6 +88,8 @@ private:
         /// Returns the rates of y on the surface.
         [[nodiscard]] std::vector<double> mixed() const;
     };
+    /// Returns the velocity at which moving belts carry each body along.
+    [[nodiscard]] std::vector<double> carried_by_belts(const Mode& mode, const Moment& at) const;
     /// The right-hand acceleration of the belt of a joint.
     [[nodiscard]] double belt_rate(std::size_t joint, const Moment& at) const;
 
@@ -118,6 +122,7 @@ private:
     std::vector<double> keep(const Mixing& all, const std::vector<std::size_t>& staying, const Moment& at,
                              std::vector<double>& rates) const;
     [[nodiscard]] Sides both(const Sliding& of, const Moment& at) const;
+    [[nodiscard]] bool falls_if_held(const Sliding& of, const Side& own, const Moment& at) const;
     [[nodiscard]] double share(const Sliding& of, const Moment& at) const;
     [[nodiscard]] std::optional<Sliding> owner_of(Piecewise& function, double t) const;
     [[nodiscard]] std::size_t first_held(const Sliding& of) const;
