@@ -73,17 +73,18 @@ struct Event {
 
 // The outcomes of a run, in one list with their sentences, so that neither can be forgotten.
 
-#define DINAL_OUTCOMES(X)                                                                                         \
-    X(reached_end, "reached the end")                                                                             \
-    X(at_rest, "at rest")                                                                                         \
-    X(stuck_at_end, "stuck at the end")                                                                           \
-    X(stopped, "stopped at an event")                                                                             \
-    X(interrupted, "interrupted")                                                                                 \
-    X(state_not_finite, "the state became infinite: unstable system, feedback or step")                           \
-    X(excitation_not_finite, "M failed or became infinite")                                                       \
-    X(not_a_function, "M depends on more than its arguments: evaluated again, it returned another value")         \
-    X(unresolved, "the motion is not resolved at this time: try a larger tolerance, or rk4")                      \
-    X(blocked, "a wall, freewheel or rigid link stops a moved body: let it give way, as walls with stiffness do") \
+#define DINAL_OUTCOMES(X)                                                                                        \
+    X(reached_end, "reached the end")                                                                            \
+    X(at_rest, "at rest")                                                                                        \
+    X(stuck_at_end, "stuck at the end")                                                                          \
+    X(stopped, "stopped at an event")                                                                            \
+    X(interrupted, "interrupted")                                                                                \
+    X(state_not_finite, "the state became infinite: unstable system, feedback or step")                          \
+    X(excitation_not_finite, "M failed or became infinite")                                                      \
+    X(not_a_function, "M depends on more than its arguments: evaluated again, it returned another value")        \
+    X(unresolved, "the motion is not resolved at this time: try a larger tolerance, or rk4")                     \
+    X(blocked,                                                                                                   \
+      "a wall, freewheel or rigid link stops a moved body or belt: let it give way, as walls with stiffness do") \
     X(chattering, "switched endlessly at one time")
 
 enum class Outcome {

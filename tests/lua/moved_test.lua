@@ -96,6 +96,15 @@ test("a run ends where something stands in the way of a moved body, or of one th
         has(run.outcome, "a wall, freewheel or rigid link stops a moved body")
         near(run.t_end, ends, 1e-9)
     end
+    -- A freewheel cannot fall behind a moved body, nor behind a belt at a wall.
+    local other = { velocity = function(t) return 0.5 + 0.5 * math.cos(t / 2) end }
+    local both = system { bodies = { a = other, b = { velocity = function(t) return 0.3 * math.sin(t) end } },
+        links = { l = { "a", "b", friction = friction.freewheel {} } } }:simulate { t_end = 8 }
+    has(both.outcome, "stops a moved body or belt")
+    near(both.t_end, 2 * math.pi, 1e-9)
+    local carried = system { I = 1, k = 0, friction = friction.freewheel {}, walls = { upper = 1, restitution = 0.5 } }:simulate { belt = 0.5, t_end = 5 }
+    has(carried.outcome, "stops a moved body or belt")
+    near(carried.t_end, 2, 1e-9)
 end)
 
 test("an angle that is not read is sampled at most run.gap apart", function()

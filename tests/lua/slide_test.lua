@@ -435,6 +435,7 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
                     local run = system { I = 1, k = k, spring = case[2] }:simulate { M = case[1], t_end = 10, dt = 1 }
                     equal(run.t[#run], 10)
                     assert(run.theta:abs():max() < 1e-9, ("sign %d, load %g, k %g: %s"):format(n, load, k, run.outcome))
+                    assert(k == 0 or #of_kind(run, "turn") == 0, ("sign %d, load %g, k %g: it turns"):format(n, load, k))
                 end
             end
         end

@@ -180,16 +180,19 @@ bool Engine::advance() {
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
-/// Returns whether joints that hold do not let moved bodies or rigid links keep to their motion on the stretch.
+/// Returns whether joints that hold do not let moved bodies, belts or rigid links keep to their motion on the stretch,
+/// or a freewheel turns backward.
 bool Engine::strays_from_prescribed(const Frame& frame) const {
-    if (problem_.hidden == 0) return false;
+    if (!mechanics_.has_belts() && problem_.hidden == 0) return false;
     constexpr double clearly = 1e-6;
     std::vector<double> belts(mechanics_.joints()), offsets(n());
     for (const std::size_t node : {node_count / 2, node_count - 1}) {
         for (std::size_t j = 0; j < belts.size(); ++j) belts[j] = now_.mode.holds(j) ? segment_.belts[j][node] : 0;
         frame.offsets(belts, now_.mode, offsets);
         for (std::size_t j = 0; j < belts.size(); ++j) {
-            if (now_.mode.rigid[j] == 0) continue;
+            const bool one_way = now_.rubs(j) && joint_at(j).friction.law.is_one_way();
+            if (one_way && now_.mode.friction[j].way == Motion::backward) return true;
+            if (now_.mode.rigid[j] == 0 && !(one_way && now_.mode.holds(j))) continue;
             const double size = joint_at(j).size(offsets) + std::fabs(belts[j]);
             if (std::fabs(joint_at(j).sum(offsets) - belts[j]) > clearly * size) return true;
         }

@@ -342,12 +342,17 @@ void Slides::put_on_surface(const Sliding& of, const Sides& sides, Now& now, dou
     const std::size_t n = mechanics_.bodies();
     const auto& [own, beyond] = sides;
     const double by = (of.of_place ? own.speed : own.margin) / (beyond.rate - own.rate);
+    // What the rounding of a change leaves is none of the motion.
+    const auto add = [](double& value, double change) {
+        const double sum = value + change;
+        value = std::fabs(sum) > 16 * rounding * std::fabs(change) ? sum : 0;
+    };
     for (std::size_t k = n; k < (of.of_place ? 2 * n : now.y.size()); ++k) {
         const double change = -by * (beyond.rates[k] - own.rates[k]);
         if (of.of_place && change != 0)
-            now.y[k - n] += change / by * own.off / (beyond.rate - own.rate), now.low[k - n] = 0;
+            add(now.y[k - n], change / by * own.off / (beyond.rate - own.rate)), now.low[k - n] = 0;
         if (k < 2 * n) work += mechanics_.own_inertia(k - n) * change * (now.y[k] + change / 2);
-        now.y[k] += change;
+        add(now.y[k], change);
     }
 }
 
