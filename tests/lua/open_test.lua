@@ -119,4 +119,18 @@ test("a contact whose load ends together with a step of M opens once, and the ru
     equal(rig:simulate { M = { b = excitation.square { amplitude = .2, omega = 2 } }, t_end = 20 }.t_end, 20)
 end)
 
+test("friction that acts over a part of the way only takes the work that it does there", function()
+    for _, w in ipairs { 0.5, 0.01, 1e-5 } do
+        local function zone(_, theta) return theta > 1 and theta < 1 + w and 0.3 or 0 end
+        local function ramp(_, theta) return math.max(0, 0.3 - 0.6 * math.abs(theta - 1 - w / 2) / w) end
+        local function sector(_, theta) return (theta - 1) % 7 < w and 0.3 or 0 end
+        for of, work in pairs { [zone] = 0.3 * w, [ramp] = 0.15 * w, [sector] = 0.3 * w } do
+            for _, options in ipairs { { Rd = of }, { Rd = 1, normal = of } } do
+                expect(merged({ I = 1, k = 0 }, options), { velocity0 = 1.5, t_end = 4, dt = 2 },
+                    { events = 2, close = { 1 / 1.5 }, velocity = { 1.5, (1.5^2 - 2 * work)^0.5, (1.5^2 - 2 * work)^0.5 }, within = 1e-11, closes = 1e-7 })
+            end
+        end
+    end
+end)
+
 finish()

@@ -68,8 +68,10 @@ bool Engine::cross(const Ending& ending) {
         return restart_contacts(Because::impact);
     }
     if (!goes_on) return fail(Outcome::chattering);
+    // Beyond its condition a normal load or a limit may be 0, or no longer 0.
+    const bool changed = open_and_close();
     // Contacts stay as they are if no function jumps.
-    return crossed.jumps || !crossed.changes.slides.empty() ? decide(true) : true;
+    return changed || crossed.jumps || !crossed.changes.slides.empty() ? decide(true) : true;
 }
 
 /// Handles a slip that has reached 0, or passed it because the belt jumped.

@@ -413,7 +413,8 @@ void Guards::watch_normal(std::size_t joint) {
         const double x = first_true([&](double place) { return exact(place) > 0; },
                                     cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
         // A load that is only rounding at the time at which it opened the contact does not close it.
-        if (segment_.time(x) > now_.t.hi) see(x);
+        constexpr double clearly = 1e-9;
+        if (segment_.time(x) > now_.t.hi || values[0] > clearly * greatest(values)) see(x);
         return;
     }
     Half& half = of_.normal_halves[joint];
