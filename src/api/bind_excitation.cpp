@@ -49,6 +49,7 @@ model::Excitation to_excitation(lua_State* L, int index, std::string_view what, 
         const std::size_t name = what.rfind(": ");  // errors contain the name of the function: "M.motor returned nil"
         lua::FunctionRole role;
         if (name != std::string_view::npos) role.name = what.substr(name + 2);
+        role.may_be_negative = option != "Rd" && option != "Re";
         const auto function = std::make_shared<lua::LuaFunction>(L, index, std::move(role));
         term = model::Scripted{.function = function, .feedback = function->feedback()};
     } else {

@@ -25,6 +25,10 @@ test("a law that fails, or is negative, is reported with the speed, and the rows
     local ok, problem = pcall(negative.simulate, negative, { theta0 = 2, t_end = 20, dt = 0.01 })
     assert(not ok and tostring(problem):find("friction returned %-[%d.e-]+ at speed = 0%.%d+; it must return a finite number that is not negative"), problem)
     assert(#dinal.partial > 10)  -- 17 rows before it is too fast
+    for _, name in ipairs { "Rd", "Re" } do
+        local falls = system { I = 1, k = 0, [name] = function(t) return 0.3 - t end }
+        raises(function() falls:simulate { M = 0.1, velocity0 = 1, t_end = 2 } end, name .. " returned -", "it must return a finite number that is not negative")
+    end
     refused {
         { "friction.law(function() return nil end)", "friction returned nil at speed = 0" },
         { 'friction.law(function() error("no law") end)', "no law" },
