@@ -296,4 +296,13 @@ test("a narrow peak of a law is seen in a list of laws as it is alone", function
     near(many.theta, one.theta, 1e-12)
 end)
 
+test("a narrow dip of the law that holds a mass lets it slip", function()
+    for _, w in ipairs { 1e-2, 1e-4, 1e-6 } do
+        local run = system { I = 1, k = 0, friction = function(speed, t) return 1 - .9 * exp(-((t - .7) / w) ^ 2) + .1 * speed end }:simulate {
+            M = .5, t_end = 1.5, dt = .5 }
+        equal(table.concat(run.events.kind, " "), "slip stick")
+        near(run.events[1].t, .7 - w * math.sqrt(math.log(1.8)), 1e-9)
+    end
+end)
+
 finish()

@@ -378,11 +378,13 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
     if (begin(mechanics_.asked_spring(j), between(0))) look(size, allowed, 0);
     const Slipping& how = mode_.friction[j];
     const Mechanics::Asked law = mechanics_.asked_law(j);
-    if (law.function == nullptr || how.way == model::Motion::stuck || mode_.leans[j] != 0 || how.riding) return;
-    Series speed = between(n_);
-    if (mechanics_.has_belt(j)) speed = difference(speed, on_part(cheb::fit(s_.belts[j]), middle_, half_));
+    if (law.function == nullptr || mode_.leans[j] != 0 || how.riding) return;
+    // While the contact sticks, its limit is the law at speed 0.
+    const bool alone = joint.friction.function == nullptr, sticks = how.way == model::Motion::stuck;
+    if (alone && sticks) return;
+    Series speed = sticks ? Series{} : between(n_);
+    if (mechanics_.has_belt(j) && !sticks) speed = difference(speed, on_part(cheb::fit(s_.belts[j]), middle_, half_));
     for (double& c : speed) c *= model::sign_of(how.way);
-    const bool alone = joint.friction.function == nullptr;
     if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
 }
 
