@@ -305,4 +305,16 @@ test("a narrow dip of the law that holds a mass lets it slip", function()
     end
 end)
 
+test("an event in one direction is not told of a peak in the other one, also where a stretch is tried again", function()
+    for _, w in ipairs { 1e-2, 7.1e-4, 1e-6 } do
+        for direction, side in pairs { up = 1, down = -1 } do
+            local p = .92874850474157
+            local run = system { I = 1, k = 1 }:simulate { velocity0 = 1, t_end = 1.5, dt = .5, events = { { direction = direction,
+                when = function(t, theta, v) local e = exp(-math.abs(v - p) / w) return 2 * e / (1 + e * e) - .5 end } } }
+            equal(#run.events, 1)
+            near((run.events[1].velocity - p) / w, side * math.log(2 + math.sqrt(3)), 1e-3)
+        end
+    end
+end)
+
 finish()

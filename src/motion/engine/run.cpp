@@ -174,6 +174,7 @@ bool Engine::advance() {
         again(Flow::Attempt::shorten);
         return outcome_ == Outcome::reached_end;
     }
+    users_.advance(ending.x);
     SampledLoads sampled(mechanics_, segment_);
     recorder_->record_turns({now_, segment_, frame, *balances_, sampled}, ending.x, sizes_,
                             solver_->noise_of_torques(segment_));

@@ -8,8 +8,8 @@ namespace dinal::motion::engine {
 UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
     constexpr std::size_t most_passages = 200;
     const double before = ending.before();
-    // zeros that count as events, and zeros in the other direction, which only change the half
-    std::vector<std::pair<std::size_t, double>> wanted_ones, unwanted;
+    std::vector<std::pair<std::size_t, double>> wanted_ones;  // zeros that count as events
+    unwanted_.clear();
     for (std::size_t e = 0; e < watches_.size(); ++e) {
         const model::Direction direction = wanted_[e].direction;
         Watch& watch = watches_[e];
@@ -33,9 +33,9 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
                 wanted_ones.emplace_back(e, place(*x));
                 break;
             }
-            if (unwanted.size() > most_passages) break;
+            if (unwanted_.size() > most_passages) break;
             if (watch.half == 0) watch.half = half;
-            unwanted.emplace_back(e, place(*x));
+            unwanted_.emplace_back(e, place(*x));
             half = -half;
             from = *x;
         }
@@ -50,10 +50,13 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
             if (x <= first + one_instant) ending.users.push_back(event);
         }
     }
-    for (const auto& [event, x] : unwanted) {
-        if (x <= ending.x) watches_[event].half = -watches_[event].half;
-    }
     return {};
+}
+
+void UserEvents::advance(double x) {
+    for (const auto& [event, place] : unwanted_) {
+        if (place <= x) watches_[event].half = -watches_[event].half;
+    }
 }
 
 bool UserEvents::stay_clear(const Ranges& ranges) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "motion/engine/balance.hpp"
@@ -28,6 +29,8 @@ public:
     };
     /// Ends the stretch at the first event, if it precedes the present end.
     [[nodiscard]] Seen watch(const Segment& segment, Ending& ending);
+    /// Accepts the watched stretch up to x; one that is repeated is watched again from the same sides.
+    void advance(double x);
     /// Returns whether all functions are formulas that certainly keep their sign while the motion is within these
     /// ranges.
     [[nodiscard]] bool stay_clear(const Ranges& ranges);
@@ -57,6 +60,8 @@ private:
     const std::vector<model::WantedEvent>& wanted_;
     std::vector<Watch> watches_;
     std::vector<Half> came_from_;  ///< sides before the last actions
+    /// Zeros of the watched stretch in a direction that is no event: they only change the side.
+    std::vector<std::pair<std::size_t, double>> unwanted_;
     std::vector<double> point_;
 };
 
