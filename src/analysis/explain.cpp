@@ -27,20 +27,20 @@ constexpr std::size_t most_turns = 4, most_slides = 3;
 constexpr const char* base_text =
     "The support accelerates by a: theta is relative to it, and the torque -I a acts on the mass.";
 
-bool several(const RunToTell& whole) {
+bool several(const RunToDescribe& whole) {
     return whole.system.joints.size() > 1;
 }
 
-bool covers_all_bodies(const RunToTell& whole) {
+bool covers_all_bodies(const RunToDescribe& whole) {
     return several(whole) && !whole.joint;
 }
 
-const model::Excitation& load_on(const RunToTell& whole, std::size_t joint) {
+const model::Excitation& load_on(const RunToDescribe& whole, std::size_t joint) {
     return whole.drive.loads[joint];
 }
 
 /// A time scale: the natural period of an undisturbed joint, otherwise the shortest of the system.
-double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool undisturbed) {
+double time_scale(const RunToDescribe& whole, const model::Oscillator& seen, bool undisturbed) {
     if (undisturbed) return seen.has_spring() ? seen.natural_period() : 1;
     const double shortest = whole.system.shortest_natural_period();
     const motion::Run& run = *whole.parts.front();
@@ -51,7 +51,7 @@ double time_scale(const RunToTell& whole, const model::Oscillator& seen, bool un
 class Story : protected text::Prose {
 public:
     /// The arguments must outlive the story. `seen` is the joint as a one-body system.
-    Story(const RunToTell& whole, std::size_t joint, const model::Oscillator& seen)
+    Story(const RunToDescribe& whole, std::size_t joint, const model::Oscillator& seen)
         : whole_(whole),
           joint_(whole.system.joints[joint]),
           is_link_(whole.system.is_link(joint)),
@@ -90,17 +90,17 @@ public:
     }
 
     std::string build_text() {
-        if (joint_.rigid) return tell_rigid();
-        if (!is_link_ && whole_.system.bodies[joint_.first()].moved) return tell_moved();
-        tell_setting();
-        tell_start();
-        tell_counts();
-        tell_sliders();
-        tell_open();
-        tell_slides();
-        tell_turns();
-        tell_stops();
-        tell_end();
+        if (joint_.rigid) return describe_rigid();
+        if (!is_link_ && whole_.system.bodies[joint_.first()].moved) return describe_moved();
+        describe_setting();
+        describe_start();
+        describe_counts();
+        describe_sliders();
+        describe_open();
+        describe_slides();
+        describe_turns();
+        describe_stops();
+        describe_end();
         return std::move(text_);
     }
 
@@ -160,7 +160,7 @@ private:
         const auto& walls = system_.walls();
         return walls && (theta == walls->lower || theta == walls->upper);
     }
-    void tell_surroundings() {
+    void describe_surroundings() {
         if (on_base_ && !several(whole_)) say("{}", base_text);
         if (!belt_.components().empty() && is_smooth()) say("The belt has no effect, as there is no dry friction.");
         if (!on_belt_) return;
@@ -172,7 +172,7 @@ private:
         }
     }
 
-    std::string tell_moved() {
+    std::string describe_moved() {
         const auto torque = run_.find("torque");
         say("{} is moved by its {}", joint_.name,
             whole_.system.bodies[joint_.first()].moved->by_angle ? "angle" : "velocity");
@@ -185,7 +185,7 @@ private:
         return std::move(text_);
     }
 
-    std::string tell_rigid() {
+    std::string describe_rigid() {
         say("{} is rigid: it keeps the angle {} at {:.5g}.", joint_.name, whole_.system.angle_in_words(joint_),
             run_.initial.theta);
         const auto redundant = motion::engine::redundant_rigid(whole_.system);
@@ -198,7 +198,7 @@ private:
         return std::move(text_);
     }
 
-    void tell_walls() {
+    void describe_walls() {
         const model::Walls* walls = joint_.any_walls();
         if (walls == nullptr) return;
         const bool both = std::isfinite(walls->lower) && std::isfinite(walls->upper);
@@ -215,7 +215,7 @@ private:
         }
     }
 
-    void tell_impacts() {
+    void describe_impacts() {
         std::size_t impacts = 0;
         const model::Event *first = nullptr, *hardest = nullptr;
         for (const model::Event& event : run_.events) {
@@ -245,11 +245,11 @@ private:
 
     // ---- beginning and course
 
-    void tell_setting() {
+    void describe_setting() {
         const std::string who = name_or("The system");
         const std::string friction = " and " + friction_text() + ".";
         if (!undisturbed_) {
-            tell_numbers();
+            describe_numbers();
         } else if (system_.has_linear_spring()) {
             say("{} has T0 = {:.5g}, zeta = {:.4g} ({}){}", who, T0_, system_.damping_ratio(),
                 model::name(system_.regime()), friction);
@@ -262,17 +262,17 @@ private:
             if (system_.damping() > 0) add("viscous damping C = {:.5g} and ", system_.damping());
             add("{}.", friction_text());
         }
-        tell_law();
-        tell_walls();
+        describe_law();
+        describe_walls();
         if (!covers_all_bodies(whole_) && !system_.units().usual()) say("Units: {}.", system_.units().in_words());
-        if (!is_link_) tell_load();
-        tell_surroundings();
+        if (!is_link_) describe_load();
+        describe_surroundings();
         if (own_rule_) say("{}", own_rule_->setting);
         end_paragraph();
     }
 
     /// Describes T0 and zeta; links and linked bodies have none of their own.
-    void tell_numbers() {
+    void describe_numbers() {
         std::string numbers;
         const auto number = [&](const char* name, double value) {
             if (value > 0) numbers += fmt::format("{}{} = {:.5g}", numbers.empty() ? "" : ", ", name, value);
@@ -292,7 +292,7 @@ private:
         say("{} has {}{}{}.", is_link_ ? "It" : joint_.name, numbers, numbers.empty() ? "" : " and ", friction_text());
     }
 
-    void tell_load() {
+    void describe_load() {
         const double period = model::period_from(excitation_, run_.t_start);
         if (excitation_.components().empty()) {
             if (!several(whole_)) say("There is no M{}", on_base_ || on_belt_ ? "." : ": the motion is free.");
@@ -335,7 +335,7 @@ private:
                            Re(forward));
     }
 
-    void tell_law() {
+    void describe_law() {
         const model::Friction& law = system_.friction();
         if (!joint_.friction.is_constant()) return;
         if (law.normal() != 1 && !law.none()) say("These are the torques under the normal load {:.5g}.", law.normal());
@@ -345,7 +345,7 @@ private:
                       : "These values hold near speed zero: friction depends on the speed.");
     }
 
-    void tell_start() {
+    void describe_start() {
         const model::State& y = run_.initial;
         const Stretch& first = stretches_.front();
         say("{} started at t = {} from theta = {:.5g} with velocity {:.5g}", name_or("The mass"), at(run_.t_start),
@@ -379,12 +379,12 @@ private:
             const bool carried = is_link_ || (on_belt_ && !at_wall(y.theta));
             say("Nothing {}{} it{} until the end of the run, t = {}.", run_.gap > 0 ? "that was seen " : "",
                 carried ? "made" : "moved", carried ? " slip" : "", at(run_.t_stop));
-            tell_stillness();
+            describe_stillness();
         }
         end_paragraph();
     }
 
-    void tell_counts() {
+    void describe_counts() {
         if (half_cycles_ == 0 || stretches_.back().to == run_.t_start) return;
         if (run_.events.empty() && swings_.size() == 1) {
             const model::State &begin = run_.initial, &end = run_.state_at_stop;
@@ -408,11 +408,11 @@ private:
                 text::percent(stuck_ / all));
         }
         add(".");
-        tell_impacts();
+        describe_impacts();
     }
 
     /// Describes open contacts.
-    void tell_open() {
+    void describe_open() {
         const double open = time_open(run_), all = run_.t_stop - run_.t_start;
         if (open >= all && all > 0) {
             say("It was open all the time.");
@@ -422,7 +422,7 @@ private:
     }
 
     /// Counts the events of dry sliders behind springs, which are none of the mass.
-    void tell_sliders() {
+    void describe_sliders() {
         const auto count = [this](model::EventKind kind) {
             const auto is = [kind](const model::Event& event) { return event.kind == kind; };
             return static_cast<std::size_t>(std::ranges::count_if(run_.events, is));
@@ -439,7 +439,7 @@ private:
     }
 
     /// Describes motions along a surface on which M, a spring or the rate of a state jumps.
-    void tell_slides() {
+    void describe_slides() {
         using enum model::EventKind;
         std::size_t n = 0;
         double from = run_.t_start, begun = run_.initial.theta, all = 0;
@@ -480,9 +480,9 @@ private:
         if (n > most_slides) say("There were {} such slides, which lasted {} in all.", n, at(all));
     }
 
-    void tell_turns() {
+    void describe_turns() {
         if (!undisturbed_) {
-            tell_reach();
+            describe_reach();
             return;
         }
         std::string places;
@@ -495,7 +495,7 @@ private:
         if (n > 0)
             say("{} at theta = {}{}", on_belt_ ? "The sliding reversed" : "It turned", places,
                 n > most_turns ? " ..." : ".");
-        tell_decay();
+        describe_decay();
         end_paragraph();
     }
 
@@ -509,7 +509,7 @@ private:
     }
 
     /// Describes only the range if links disturb the turns.
-    void tell_reach() {
+    void describe_reach() {
         const auto [low, high] = reach();
         const double size = std::max(std::fabs(low), std::fabs(high));
         if (low < high) {
@@ -519,7 +519,7 @@ private:
     }
 
     /// Compares a free motion with its closed form, as far as it has turned.
-    void tell_decay() {
+    void describe_decay() {
         const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
         const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
         if (!free() || !has_reasons() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
@@ -546,7 +546,7 @@ private:
         }
     }
 
-    void tell_stops() {
+    void describe_stops() {
         const std::size_t n = stops_.size();
         for (std::size_t i = 0; i < n; ++i) {
             if (n > most_stops && i == first_stops) {
@@ -554,11 +554,11 @@ private:
                 say("... {} more ...", i - first_stops);
                 end_paragraph();
             }
-            tell_stop(*stops_[i]);
+            describe_stop(*stops_[i]);
         }
     }
 
-    void tell_stop(const Stretch& stop) {
+    void describe_stop(const Stretch& stop) {
         const model::Event& begun = *stop.begun_by;
         if (at_wall(begun.theta)) {
             say("It came to rest at the wall, theta = {:.5g}, at t = {}", begun.theta, at(begun.t));
@@ -587,7 +587,7 @@ private:
                 constant_from_ <= begun.t ? "then" : "t = " + at(constant_from_));
         } else {
             add(", and was still stuck when the run ended at t = {}.", at(run_.t_stop));
-            tell_stillness();
+            describe_stillness();
         }
         end_paragraph();
     }
@@ -617,14 +617,14 @@ private:
 
     // ---- the end
 
-    void tell_end() {
+    void describe_end() {
         const bool over = still_ || (stretches_.back().stuck && excitation_.constant_from() <= run_.t_stop);
         const bool failed = !model::is_whole(run_.outcome);
         if (half_cycles_ > 0 && !over) {
             if (const auto motion = recurrence(events_)) {
-                tell_recurrence(*motion);
+                describe_recurrence(*motion);
             } else if (!decay_told_ && undisturbed_) {
-                tell_trend();
+                describe_trend();
             }
         }
         if (const Stretch& last = stretches_.back(); !failed && !last.stuck) {
@@ -635,7 +635,7 @@ private:
     }
 
     /// Explains why a mass stuck at the end stays, if known.
-    void tell_stillness() {
+    void describe_stillness() {
         still_ = run_.outcome == model::Outcome::at_rest;
         if (!still_) return;
         if (on_base_ || on_belt_ || !has_reasons()) {
@@ -656,8 +656,8 @@ private:
         return model::cannot_break_away(model::Lowered(system_), excitation_.most(), run_.state_at_stop.theta);
     }
 
-    void tell_recurrence(const Recurrence& motion) {
-        tell_period(motion);
+    void describe_recurrence(const Recurrence& motion) {
+        describe_period(motion);
         if (motion.drift != 0) {
             say("It advances by {:.5g} in each period: stick-slip.", motion.drift);
         } else {
@@ -684,7 +684,7 @@ private:
         end_paragraph();
     }
 
-    void tell_period(const Recurrence& motion) {
+    void describe_period(const Recurrence& motion) {
         const double period = model::period_from(excitation_, motion.since);
         const double ratio = period > 0 ? motion.period / period : 0, whole = std::round(ratio);
         std::string of =
@@ -705,7 +705,7 @@ private:
         if (period == 0 && excitation_.has_feedback()) say("This is a limit cycle if M depends on the motion alone.");
     }
 
-    void tell_trend() {
+    void describe_trend() {
         const double period = model::period_from(excitation_, stretches_.back().from);
         const Swings last = swings(swings_, period);
         if (last.trend == Trend::unknown) {
@@ -722,13 +722,13 @@ private:
             : shrinks ? "decays"
                       : "is not periodic so far",
             a, b, c, period > 0 ? "periods of M" : fmt::format("spans of {}", at(last.span)));
-        tell_step(last);
+        describe_step(last);
         add(".");
         end_paragraph();
     }
 
     /// Describes a regular change of the amplitude.
-    void tell_step(const Swings& last) {
+    void describe_step(const Swings& last) {
         if (last.trend == Trend::irregular) return;
         const auto& [a, b, c] = last.amplitudes;
         constexpr double most_irregular = 1e-3;
@@ -740,7 +740,7 @@ private:
         }
     }
 
-    const RunToTell& whole_;
+    const RunToDescribe& whole_;
     const model::Joint& joint_;
     bool is_link_;
     bool undisturbed_;  // whether no link disturbs it
@@ -763,11 +763,12 @@ private:
 /// Builds the text on the whole system around those on its bodies and links.
 class WholeStory : protected text::Prose {
 public:
-    explicit WholeStory(const RunToTell& whole) : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
+    explicit WholeStory(const RunToDescribe& whole)
+        : whole_(whole), system_(whole.system), run_(*whole.parts.front()) {}
 
     std::string build_text(const std::vector<Energy>& energies) {
         const bool all = covers_all_bodies(whole_);
-        if (all) tell_setting();
+        if (all) describe_setting();
         end_paragraph();
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             if (whole_.joint && *whole_.joint != j) continue;
@@ -776,9 +777,9 @@ public:
             if (seen) text_ += (text_.empty() ? "" : all ? "\n\n" : "\n") + Story(whole_, j, *seen).build_text();
         }
         if (all) text_ += "\n";
-        if (all && !energies.empty()) tell_energy(energies);
-        tell_doubts();
-        tell_outcome();
+        if (all && !energies.empty()) describe_energy(energies);
+        describe_doubts();
+        describe_outcome();
         end_paragraph();
         return std::move(text_);
     }
@@ -787,7 +788,7 @@ private:
     std::string time(double t) const { return text::time_text(t, run_.t_stop - run_.t_start); }
     const std::string& name(std::size_t joint) const { return system_.joints[joint].name; }
 
-    void tell_setting() {
+    void describe_setting() {
         const std::size_t n = system_.bodies.size(), links = system_.joints.size() - n;
         say("{} and {}, from t = {} to {}.", text::counted(n, "body"), text::counted(links, "link"), time(run_.t_start),
             time(run_.t_stop));
@@ -801,7 +802,7 @@ private:
     }
 
     /// Describes events that the run may have missed, and causes of a long computation.
-    void tell_doubts() {
+    void describe_doubts() {
         const double shortest = system_.shortest_natural_period(), scale = std::isfinite(shortest) ? shortest : 1;
         if (run_.gap > 0) {
             say("A pulse of a Lua function that is shorter than {} may have been missed.",
@@ -817,7 +818,7 @@ private:
         }
     }
 
-    void tell_energy(const std::vector<Energy>& energies) {
+    void describe_energy(const std::vector<Energy>& energies) {
         const Energy whole = sum_of(energies);
         if (!(whole.flow > 0)) return;
         struct Share {
@@ -859,7 +860,7 @@ private:
         end_paragraph();
     }
 
-    void tell_outcome() {
+    void describe_outcome() {
         if (model::is_whole(run_.outcome)) return;
         if (run_.outcome == model::Outcome::interrupted) {
             say("The run was interrupted at t = {}: the text covers the time until then.", time(run_.t_stop));
@@ -868,14 +869,14 @@ private:
         }
     }
 
-    const RunToTell& whole_;
+    const RunToDescribe& whole_;
     const model::System& system_;
     const motion::Run& run_;
 };
 
 }  // namespace
 
-std::string explain(const RunToTell& run, const std::vector<Energy>& energies) {
+std::string explain(const RunToDescribe& run, const std::vector<Energy>& energies) {
     return WholeStory(run).build_text(energies);
 }
 

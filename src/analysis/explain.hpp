@@ -15,7 +15,7 @@
 
 namespace dinal::analysis {
 
-struct RunToTell {
+struct RunToDescribe {
     const model::System& system;
     const model::Drive& drive;
     std::vector<const motion::Run*> parts;  ///< the run seen from each body and link
@@ -24,7 +24,7 @@ struct RunToTell {
 };
 
 /// Describes the whole run. `energies` of the joints may be missing.
-std::string explain(const RunToTell& run, const std::vector<Energy>& energies = {});
+std::string explain(const RunToDescribe& run, const std::vector<Energy>& energies = {});
 
 /// Describes one body, in paragraphs that fit 80 columns. In a long run only the first and last stops are listed. Calls
 /// no user function except those of spring, belt and base.

@@ -487,7 +487,7 @@ std::vector<std::complex<double>> multipliers_of(const Eigen::MatrixXd& derivati
 }
 
 void note_family(SteadyMotion& motion) {
-    if (miss_one(motion.multipliers) < neutral_within) motion.unique = false;
+    if (distance_from_one(motion.multipliers) < neutral_within) motion.unique = false;
 }
 
 }  // namespace dinal::analysis

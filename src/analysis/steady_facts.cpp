@@ -106,7 +106,7 @@ bool contracts(const SteadyQuestion& question) {
            });
 }
 
-double miss_one(const std::vector<std::complex<double>>& multipliers) {
+double distance_from_one(const std::vector<std::complex<double>>& multipliers) {
     double least = model::never;
     constexpr double far = 1e-3;  // distance from the unit circle, where a disturbance persists
     constexpr int most = 32;
@@ -149,7 +149,7 @@ void judge(const SteadyQuestion& question, std::vector<std::complex<double>> mul
     double largest = 0;
     for (const std::complex<double>& multiplier : motion.multipliers) largest = std::max(largest, std::abs(multiplier));
     motion.stable = largest <= largest_stable;
-    const double misses = miss_one(motion.multipliers);
+    const double misses = distance_from_one(motion.multipliers);
     if (by.alone && contracts(question)) {
         motion.unique = misses > by.error;
     } else if (misses < neutral_within) {
@@ -214,7 +214,7 @@ std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, c
     return asked;
 }
 
-void tell_of_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion) {
+void fill_from_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion) {
     motion.start = run.initial;
     motion.low = motion.high = run.initial.theta;
     motion.t_high = run.t_start;
@@ -259,7 +259,7 @@ SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole
     };
     SteadyMotion facts = whole;
     if (run) {
-        tell_of_run(question, *run, facts);
+        fill_from_run(question, *run, facts);
         double size = 0;
         for (const BodyMotion& body : whole.bodies) size = std::max(size, body.high - body.low);
         // The difference of two angles held together is only rounding.

@@ -16,7 +16,7 @@ bool contracts(const SteadyQuestion& question);
 
 /// The distance of these multipliers from 1, after one or several periods; if it is 0, neighbouring motions are
 /// periodic, too.
-double miss_one(const std::vector<std::complex<double>>& multipliers);
+double distance_from_one(const std::vector<std::complex<double>>& multipliers);
 
 /// Returns whether friction, springs, walls and M are antisymmetric half a period later.
 bool is_alike_both_ways(const SteadyQuestion& question);
@@ -62,7 +62,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
                       int periods);
 
 /// Fills in what a run of one period shows: extremes, stops, any movement.
-void tell_of_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion);
+void fill_from_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion);
 
 /// The question with this start.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);

@@ -204,14 +204,14 @@ public:
         switch (motion_.status) {
             case SteadyStatus::steady:
                 if (motion_.period == 0) {
-                    several() ? tell_rotations()
+                    several() ? describe_rotations()
                               : say("It moves at the constant velocity {:.6g}.", motion_.start.velocity);
                     break;
                 }
-                tell_period();
-                several() ? tell_bodies() : tell_extremes(shape);
-                tell_memory();
-                tell_stability();
+                describe_period();
+                several() ? describe_bodies() : describe_extremes(shape);
+                describe_memory();
+                describe_stability();
                 break;
             case SteadyStatus::adheres:
                 if (several()) {
@@ -252,22 +252,22 @@ public:
                     number(motion_.growth), period);
                 break;
             case SteadyStatus::none:
-                tell_none(sampled);
+                describe_none(sampled);
                 break;
         }
     }
 
-    void tell_others(const std::vector<OtherMotion>& others) {
+    void describe_others(const std::vector<OtherMotion>& others) {
         constexpr std::size_t most = 3;
-        for (std::size_t i = 0; i < std::min(most, others.size()); ++i) tell_other(others[i].motion);
+        for (std::size_t i = 0; i < std::min(most, others.size()); ++i) describe_other(others[i].motion);
         if (others.size() > most) say("There are {} more (s.others).", others.size() - most);
-        if (others.empty()) tell_unique();
+        if (others.empty()) describe_unique();
     }
     void count_others(std::size_t others) {
         if (others > 0) {
             say("From other starts {} {} seen.", text::counted(others, "other motion"), others == 1 ? "was" : "were");
         }
-        if (others == 0) tell_unique();
+        if (others == 0) describe_unique();
     }
 
     std::string take_text() { return std::move(sentences_); }
@@ -277,7 +277,7 @@ private:
     std::string number(double x) const {
         return text::number_text(x, std::max({std::fabs(motion_.low), std::fabs(motion_.high), std::fabs(x)}));
     }
-    void tell_period() {
+    void describe_period() {
         if (timeless_) {
             say("The motion is a limit cycle of period {:.6g}.", motion_.period);
         } else {
@@ -285,7 +285,7 @@ private:
                 motion_.periods == 1 ? "the period" : fmt::format("{} periods", motion_.periods));
         }
     }
-    void tell_extremes(const SteadyShape& shape) {
+    void describe_extremes(const SteadyShape& shape) {
         if (const auto& run = motion_.by_returns.run; std::isnan(motion_.amplitude) && run) {
             say("It advances by {:.6g} in each period.", run->state_at_stop.theta - run->initial.theta);
         } else {
@@ -303,7 +303,7 @@ private:
         }
         if (motion_.symmetric) say("The motion is symmetric: theta(t + T/2) = -theta(t).");
     }
-    void tell_rotations() {
+    void describe_rotations() {
         if (std::ranges::all_of(motion_.bodies, [](const BodyMotion& body) { return body.turned != 0; })) {
             say("All bodies rotate at constant speed.");
             return;
@@ -314,7 +314,7 @@ private:
             if (velocity == 0) say("{} is at rest.", names_[i]);
         }
     }
-    void tell_bodies() {
+    void describe_bodies() {
         for (std::size_t i = 0; i < names_.size(); ++i) {
             const BodyMotion& body = motion_.bodies[i];
             const double size = std::max(std::fabs(body.low), std::fabs(body.high));
@@ -326,12 +326,12 @@ private:
             }
         }
     }
-    void tell_memory() {
+    void describe_memory() {
         if (!motion_.by_returns.run || motion_.by_returns.question) return;
         say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
             timeless_ ? "" : fmt::format("of {} periods of M ", motion_.maps));
     }
-    void tell_stability() {
+    void describe_stability() {
         if (!motion_.differentiable) return;
         double largest = 0;
         for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
@@ -347,7 +347,7 @@ private:
             say("It is stable: {} of a disturbance remains after a period.", text::percent(largest));
         }
     }
-    void tell_none(bool sampled) {
+    void describe_none(bool sampled) {
         if (timeless_) {
             say("No limit cycle was found: the motion is irregular, or it settles very slowly.");
         } else {
@@ -366,7 +366,7 @@ private:
                 "the period.");
         }
     }
-    void tell_other(const SteadyMotion& other) {
+    void describe_other(const SteadyMotion& other) {
         if (other.stands()) {
             const std::string place = several() ? "" : " at theta = " + number(other.low);
             other.stable
@@ -382,7 +382,7 @@ private:
                 text::counted(static_cast<std::size_t>(other.periods), "period"));
         }
     }
-    void tell_unique() {
+    void describe_unique() {
         if (motion_.status != SteadyStatus::steady) return;
         if (!motion_.unique.has_value()) {
             say("{} other starts led to no other motion, which is no proof.", other_starts);
@@ -405,7 +405,7 @@ std::string description_of(const SteadyQuestion& question, const SteadyMotion& m
     const std::vector<std::string> nobody;
     SteadyStory story(motion, question.is_timeless(), nobody);
     story.tell(shape, model::has_memory<model::SampledController>(question.drive.M()), question.repeats.period);
-    if (motion.is_found()) story.tell_others(others);
+    if (motion.is_found()) story.describe_others(others);
     return story.take_text();
 }
 

@@ -725,7 +725,7 @@ plots::Numbers drawn(lua_State* L, const Data& data, const std::string& name) {
 
 std::string label_of(const Data& data, const std::string& name) {
     const DataColumn* column = data.find(name);
-    return column != nullptr ? model::of_unit(plots::symbol_for(name), column->unit) : name;
+    return column != nullptr ? model::name_with_unit(plots::symbol_for(name), column->unit) : name;
 }
 
 constexpr double spectrum_decades = 1e-6;  // smallest plotted amplitude of a spectrum, relative to the largest

@@ -1163,8 +1163,8 @@ int fit_plot(lua_State* L) {
     figures[1].title = "record - fit";
     const ColumnUnits in(fit->units);
     for (plots::Figure& figure : figures) {
-        figure.x.label = model::of_unit("t", in.t);
-        if (!in.theta.empty()) figure.y.label = model::of_unit("θ", in.theta);
+        figure.x.label = model::name_with_unit("t", in.t);
+        if (!in.theta.empty()) figure.y.label = model::name_with_unit("θ", in.theta);
     }
     return deliver(L, options, std::move(figures));
 }

@@ -373,8 +373,8 @@ int plot_vectors(lua_State* L) {
         figure.curves = std::move(items.curves);
         if (items.run) {
             const model::Units& units = units_of(*items.run);
-            figure.x.label = model::of_unit("t", units.t);
-            figure.y.label = model::of_unit("theta", units.theta);
+            figure.x.label = model::name_with_unit("t", units.t);
+            figure.y.label = model::name_with_unit("theta", units.theta);
         }
         apply_options(L, options, figure);
         std::vector<plots::Figure> figures{std::move(figure)};

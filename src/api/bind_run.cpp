@@ -432,7 +432,7 @@ int data_of_run(lua_State* L) {
 }
 
 lua::Pushed events(lua_State* L, const RunHandle& run) {
-    push_events(L, run->result.told_events(), run->result.event_names, units_of(*run),
+    push_events(L, run->result.events_once(), run->result.event_names, units_of(*run),
                 run->of_all() ? &run->system() : nullptr);
     return {};
 }

@@ -19,7 +19,7 @@ namespace dinal::api {
 
 namespace {
 
-using model::of_unit;
+using model::name_with_unit;
 
 /// Name, value and remark in columns; a remark that does not fit is omitted.
 std::string row(std::string_view name, double value, std::string_view remark, const terminal::Display& screen) {
@@ -38,13 +38,13 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     std::string text = terminal::spelled("system  I θ'' + C θ' + Rd sgn θ' + k θ = M(t)", screen);
     text = text::columns(text) < screen.width ? text : "system";
     const model::Units& units = system.units();
-    text += row("I", system.inertia(), of_unit(units.theta == "rad" ? "moment of inertia" : "inertia", units.inertia()),
-                screen);
-    text += row("k", system.stiffness(), of_unit("stiffness", units.stiffness()), screen);
-    text += row("C", system.damping(), of_unit("viscous damping", units.damping()), screen);
+    text += row("I", system.inertia(),
+                name_with_unit(units.theta == "rad" ? "moment of inertia" : "inertia", units.inertia()), screen);
+    text += row("k", system.stiffness(), name_with_unit("stiffness", units.stiffness()), screen);
+    text += row("C", system.damping(), name_with_unit("viscous damping", units.damping()), screen);
     const model::Friction law = system.friction().under(1);
-    text += row("Rd", law.kinetic(), of_unit("dry friction while sliding", units.M), screen);
-    text += row("Re", law.greatest_holding(), of_unit("breakaway torque", units.M), screen);
+    text += row("Rd", law.kinetic(), name_with_unit("dry friction while sliding", units.M), screen);
+    text += row("Re", law.greatest_holding(), name_with_unit("breakaway torque", units.M), screen);
     if (system.friction().normal() != 1) {
         text += row("normal", system.friction().normal(), "factor of the torques of friction", screen);
     }
@@ -71,13 +71,13 @@ std::string system_card(lua_State* L, int index, const terminal::Display& screen
     }
     text += row("omega0", system.natural_frequency(),
                 "natural frequency, rad per " + (units.t.empty() ? "time unit" : units.t), screen);
-    text += row("T0", system.natural_period(), of_unit("natural period", units.t), screen);
+    text += row("T0", system.natural_period(), name_with_unit("natural period", units.t), screen);
     text += row("zeta", system.damping_ratio(), "damping ratio: " + std::string(model::name(system.regime())), screen);
     if (!system.spring().none()) {
         return text;
     }
     const std::string place = terminal::spelled("the mass can rest wherever |θ| <= this", screen);
-    text += row("dead_zone", system.dead_zone(), units.usual() ? place : of_unit(place, units.theta), screen);
+    text += row("dead_zone", system.dead_zone(), units.usual() ? place : name_with_unit(place, units.theta), screen);
     return text;
 }
 

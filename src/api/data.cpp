@@ -95,7 +95,7 @@ std::string heading_of(std::span<const model::Event> events) {
 
 std::string first_word(const std::vector<std::string>& words) {
     const auto found = std::ranges::find_if(words, [](const auto& word) { return !files::parse_field(word, false); });
-    if (found != words.end()) return files::shown(*found);
+    if (found != words.end()) return files::quoted_for_message(*found);
     const auto number = std::ranges::find_if(words, [](const auto& word) { return !word.empty(); });
     return number == words.end() ? "''" : "the number " + *number + " in double quotes";
 }

@@ -40,7 +40,7 @@ struct DataColumn {
     /// The value as text: six digits, or a word unchanged.
     std::string text(std::size_t row) const;
     /// "t, s"
-    std::string label() const { return model::of_unit(name, unit); }
+    std::string label() const { return model::name_with_unit(name, unit); }
 };
 
 /// The first of these words that is no number, in quotes: it made a column of a file one of words.

@@ -340,7 +340,8 @@ private:
                    : named                 ? name_in(fields_[i], i + 1)
                                            : std::to_string(i + 1);
             if (!names.insert(name).second) {
-                return error_at(file_, rows_.front().number, "the name " + shown(name) + " belongs to two columns");
+                return error_at(file_, rows_.front().number,
+                                "the name " + quoted_for_message(name) + " belongs to two columns");
             }
         }
         return std::nullopt;
@@ -751,7 +752,7 @@ std::optional<double> parse_field(std::string_view field, bool decimal_comma) {
     return decimal_comma ? with_decimal_comma(word) : std::nullopt;
 }
 
-std::string shown(std::string_view field) {
+std::string quoted_for_message(std::string_view field) {
     constexpr std::size_t most = 40;
     const std::string text = text::displayable(field);
     const std::string_view beginning = text::cut_to_columns(text, most);
@@ -763,15 +764,15 @@ std::string number_fault(std::string_view field) {
         return "is empty";
     }
     if (is_nan_or_inf(field)) {
-        return "is " + shown(field) + ", but only finite numbers can be used";
+        return "is " + quoted_for_message(field) + ", but only finite numbers can be used";
     }
     if (with_decimal_comma(std::string(field))) {
-        return "is " + shown(field) + ": write a decimal point instead of the comma";
+        return "is " + quoted_for_message(field) + ": write a decimal point instead of the comma";
     }
     if (is_too_large(field)) {
-        return "is " + shown(field) + ", too large for a number in double precision (1.8e308)";
+        return "is " + quoted_for_message(field) + ", too large for a number in double precision (1.8e308)";
     }
-    return "is " + shown(field) + ", not a number";
+    return "is " + quoted_for_message(field) + ", not a number";
 }
 
 }  // namespace dinal::files

@@ -130,7 +130,7 @@ std::optional<double> parse_fortran_number(std::string_view field);
 std::optional<double> parse_field(std::string_view field, bool decimal_comma);
 
 /// A field in quotes for a sentence: short and printable.
-std::string shown(std::string_view field);
+std::string quoted_for_message(std::string_view field);
 
 /// The fault of a field refused by parse_number: "'abc' is not a number", "is empty", ...
 std::string number_fault(std::string_view field);

@@ -80,7 +80,8 @@ private:
             const std::optional<std::uint64_t> count = parse_integer<std::uint64_t>(line);
             if (!count) {
                 return error_at(file_, lines_.number(),
-                                "NPUNT, the number of rows, should stand here alone instead of " + shown(line) +
+                                "NPUNT, the number of rows, should stand here alone instead of " +
+                                    quoted_for_message(line) +
                                     "; a table with or without names is read when it is called .csv");
             }
             promised_ = *count;

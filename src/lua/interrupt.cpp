@@ -64,7 +64,7 @@ void note_first_place(lua_State* L) {
 }
 
 void interrupt_hook(lua_State* L, lua_Debug*) {
-    settle_refusal();
+    stop_after_refusal();
     if (interrupt_requested() && armed) {
         raise_interrupted(L);
     }
@@ -214,14 +214,14 @@ void nudge(pthread_t worker) noexcept {
     pthread_kill(worker, SIGURG);
 }
 
-SignalsForOthers::SignalsForOthers() {
+NoSignalsForNewThreads::NoSignalsForNewThreads() {
     sigset_t others;
     sigfillset(&others);
     sigdelset(&others, SIGURG);
     pthread_sigmask(SIG_SETMASK, &others, &before_);
 }
 
-SignalsForOthers::~SignalsForOthers() {
+NoSignalsForNewThreads::~NoSignalsForNewThreads() {
     pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
@@ -236,7 +236,7 @@ RunningThread::RunningThread(lua_State* caller, lua_State* callee) : caller_(cal
 }
 
 RunningThread::~RunningThread() {
-    settle_refusal();
+    stop_after_refusal();
     running_here() = caller_;
     if (requested != Stop::none && armed) {
         set_hook(caller_);  // the coroutine was stopped, so its caller is stopped, too

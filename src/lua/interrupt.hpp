@@ -60,7 +60,7 @@ void request_stop(Stop reason) noexcept;
 /// Like request_stop(), but not for signal handlers; sets stopped_at() to the present position.
 void stop_here(Stop reason) noexcept;
 
-/// Makes settle_refusal() run before the next Lua instruction on this thread.
+/// Makes stop_after_refusal() run before the next Lua instruction on this thread.
 void look_at_next_instruction() noexcept;
 
 /// Raises the string "interrupted!" or "limit reached!" in the running code, without position.
@@ -117,10 +117,10 @@ private:
 void nudge(pthread_t worker) noexcept;
 
 /// While this object lives, new threads receive no signal except a nudge: Ctrl-C is for the program's own thread.
-class SignalsForOthers : text::NotCopied {
+class NoSignalsForNewThreads : text::NotCopied {
 public:
-    SignalsForOthers();
-    ~SignalsForOthers();
+    NoSignalsForNewThreads();
+    ~NoSignalsForNewThreads();
 
 private:
     sigset_t before_{};

@@ -144,7 +144,7 @@ void set_memory_limit(lua_State* L, std::size_t bytes) {
     if (!is_sanitized) set_backstop(bytes);
 }
 
-void settle_refusal() noexcept {
+void stop_after_refusal() noexcept {
     if (std::exchange(refused, 0) != 0 && chunk_runs()) stop_here(Stop::memory);
 }
 

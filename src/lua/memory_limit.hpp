@@ -16,7 +16,7 @@ void set_memory_limit(lua_State* L, std::size_t bytes);
 
 /// Ends the chunk of this thread if Lua was refused memory and garbage collection did not help: no pcall may continue
 /// from there. Called at the instruction after a refusal, and at the end of a chunk or coroutine.
-void settle_refusal() noexcept;
+void stop_after_refusal() noexcept;
 
 /// The limit in bytes; 0: none.
 [[nodiscard]] std::size_t memory_limit() noexcept;

@@ -512,7 +512,7 @@ bool LuaFunction::agrees(double read, CallState& call, double t, const model::St
                          std::span<const double> states) {
     constexpr std::uint64_t first = 3, between = 1024;
     if (++values_ > first && values_ % between != 0) return true;
-    const double asked = ask(call, t, state, states);
+    const double asked = evaluate(call, t, state, states);
     if (std::bit_cast<std::uint64_t>(asked) == std::bit_cast<std::uint64_t>(read)) return true;
     reading_->formula.reset();
     reading_->obstacle = "it gave another value than its formula";
@@ -526,13 +526,13 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
         const double M = read->value(t, state, states.first(reading_->arguments.state_count()));
         if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
     }
-    const double M = ask(*call, t, state, states);
+    const double M = evaluate(*call, t, state, states);
     if (!formula()) ++world;
     return M;
 }
 
 // Uses lua_pcall although Lua's errors would unwind the integrator as well: the rows so far must be kept.
-double LuaFunction::ask(CallState& call, double t, const model::State& state, std::span<const double> states) {
+double LuaFunction::evaluate(CallState& call, double t, const model::State& state, std::span<const double> states) {
     lua_State* L = call.L_;
     lua_pushcfunction(L, guarded<witness_error>);
     const int handler = lua_gettop(L);
@@ -661,13 +661,13 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
         }
     }
     if (filled == times.size() || call->failed_) return filled;
-    filled += ask(*call, times.subspan(filled), out.subspan(filled));
+    filled += evaluate(*call, times.subspan(filled), out.subspan(filled));
     if (!formula()) ++world;
     return filled;
 }
 
 // One lua_pcall for the block: it costs as much as the call of a short function.
-std::size_t LuaFunction::ask(CallState& call, std::span<const double> times, std::span<double> out) {
+std::size_t LuaFunction::evaluate(CallState& call, std::span<const double> times, std::span<double> out) {
     lua_State* L = call.L_;
     Block block{this, times, out};
     const int top = lua_gettop(L);

@@ -179,8 +179,8 @@ private:
     /// Returns whether the function is a friction law: smooth between its conditions, and never called with negative
     /// speeds in Lua.
     bool is_law() const { return !role_.may_be_negative && role_.motion != FunctionRole::Motion::by_parameters; }
-    double ask(CallState& call, double t, const model::State& state, std::span<const double> states);
-    std::size_t ask(CallState& call, std::span<const double> times, std::span<double> out);
+    double evaluate(CallState& call, double t, const model::State& state, std::span<const double> states);
+    std::size_t evaluate(CallState& call, std::span<const double> times, std::span<double> out);
     bool is_allowed(double result) const;
     double fail(CallState& call, int status, double t) const;
     bool is_good(lua_State* L, double& result) const;

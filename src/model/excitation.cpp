@@ -136,7 +136,7 @@ double Excitation::view(double t, double spacing) const {
         }
         if (const auto* script = std::get_if<Scripted>(&c.term)) {
             const double own_time = t - script->delay;
-            nearest = std::min(nearest, script->function->told_until(own_time) - own_time);
+            nearest = std::min(nearest, script->function->known_until(own_time) - own_time);
         }
     }
     return nearest;
@@ -164,7 +164,7 @@ bool Excitation::has_script() const {
     return std::any_of(components().begin(), components().end(), is_script);
 }
 
-bool Excitation::tells_rests() const {
+bool Excitation::takes_rests() const {
     return std::all_of(components().begin(), components().end(), [](const Component& c) {
         return std::visit(
             [](const auto& term) {

@@ -110,7 +110,7 @@ public:
     bool has_feedback() const;
     bool has_script() const;
     /// Returns whether all terms can be evaluated at times that lie between two doubles.
-    bool tells_rests() const;
+    bool takes_rests() const;
     /// out[i] = value(times[i]); not for feedback. Returns how many values were computed: fewer if one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 

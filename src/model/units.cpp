@@ -130,7 +130,7 @@ std::string with_unit(std::string number, std::string_view unit) {
     return number;
 }
 
-std::string of_unit(std::string name, std::string_view unit) {
+std::string name_with_unit(std::string name, std::string_view unit) {
     if (!unit.empty()) name.append(", ").append(unit);
     return name;
 }

@@ -48,7 +48,7 @@ struct Units {
 /// "1.5 s", or "1.5"
 std::string with_unit(std::string number, std::string_view unit);
 /// "period, s", or "period"
-std::string of_unit(std::string name, std::string_view unit);
+std::string name_with_unit(std::string name, std::string_view unit);
 
 inline constexpr text::Option unit_options[] = {
     text::option<&Units::theta>("theta", "unit of angle or displacement", {.otherwise = "\"rad\""}),

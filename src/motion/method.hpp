@@ -69,7 +69,7 @@ struct Cut {
 /// for errors that ranges cannot express, and
 ///     OwnRule own_rule() const;
 ///     Cut cut() const;    it runs any system and drive (Problem::more)
-///     static constexpr bool asks_in_order = true;    M is evaluated at increasing times only
+///     static constexpr bool evaluates_in_order = true;    M is evaluated at increasing times only
 template <class T>
 concept Method = requires(const T& method, const model::Oscillator& system, const Problem& problem) {
     { T::about } -> std::convertible_to<const MethodText&>;
@@ -99,7 +99,7 @@ public:
     Run run(const Problem& problem) const { return common_->run(method_, problem); }
     std::optional<OwnRule> own_rule() const { return common_->own_rule(method_); }
     /// Returns whether M is evaluated in order of time, so that a memory in M does no harm.
-    bool asks_in_order() const { return common_->asks_in_order; }
+    bool evaluates_in_order() const { return common_->evaluates_in_order; }
     /// The stretches of a method that runs any system with states, user events, belts, bases and controllers; otherwise
     /// empty.
     std::optional<Cut> cut() const { return common_->cut(method_); }
@@ -114,12 +114,12 @@ private:
         Run (*run)(const void* method, const Problem& problem);
         std::optional<OwnRule> (*own_rule)(const void* method);
         std::optional<Cut> (*cut)(const void* method);
-        bool asks_in_order;
+        bool evaluates_in_order;
     };
     template <class M>
     static constexpr bool is_in_order() {
-        if constexpr (requires { M::asks_in_order; }) {
-            return M::asks_in_order;
+        if constexpr (requires { M::evaluates_in_order; }) {
+            return M::evaluates_in_order;
         } else {
             return false;
         }

@@ -40,7 +40,7 @@ std::optional<Eigen::Index> Run::find(std::string_view name) const {
     return static_cast<Eigen::Index>(it - all.begin());
 }
 
-Growing<model::Event> Run::told_events() const {
+Growing<model::Event> Run::events_once() const {
     const auto first = std::ranges::find_if(events, [](const model::Event& e) { return e.user >= 0; });
     const auto repeats = [&](const model::Event& e) { return e.user >= 0 && e.where != first->where; };
     if (std::none_of(first, events.end(), repeats)) return events;
@@ -194,7 +194,7 @@ std::string summary(const Run& run) {
             text += (i == 0 ? " of " : ", ") + text::displayable(run.names()[i]);
         return text;
     }
-    const Growing<model::Event> events = run.told_events();
+    const Growing<model::Event> events = run.events_once();
     text += fmt::format(", t {:.9g} … {:.9g}; {}; ", run.t_start, run.t_stop, events_text(events));
     switch (run.outcome) {
         case model::Outcome::reached_end:

@@ -98,7 +98,7 @@ struct Run {
     }
     Eigen::Index size() const { return rows.rows(); }
     /// The events; a user's events only once.
-    Growing<model::Event> told_events() const;
+    Growing<model::Event> events_once() const;
     /// One name for each column of `rows` that users see.
     const std::vector<std::string>& names() const { return computed && own_names.empty() ? column_names() : own_names; }
     std::optional<Eigen::Index> find(std::string_view name) const;

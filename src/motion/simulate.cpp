@@ -224,7 +224,7 @@ text::Expected<Run> run_from(const Past& past, const model::Oscillator& system, 
 
     const std::size_t course_bytes = limits.memory / share_of_course;
     std::optional<UnderOath> oath;
-    if (!method.asks_in_order() && has_functions(system, drive)) oath.emplace(system, drive);
+    if (!method.evaluates_in_order() && has_functions(system, drive)) oath.emplace(system, drive);
     Problem problem{oath ? oath->system() : system,
                     oath ? oath->drive() : drive,
                     window,

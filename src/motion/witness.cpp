@@ -96,7 +96,7 @@ bool Witness::repeat_one() {
 }
 
 /// Records an answer and repeats doubtful evaluations. Returns false if the function contradicted itself.
-bool Witness::heard(const Answer& answer, std::span<const double> states) {
+bool Witness::record(const Answer& answer, std::span<const double> states) {
     ++asked_;
     bool jumped = false;
     if (asked_ >= first_again && answer.t >= answers_[last_].t) {
@@ -122,7 +122,7 @@ double Witness::value_with(double t, const model::State& state, std::span<const 
     if (testimony_->found || (asked_ >= next_ && !repeat_one())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
-    return heard({t, state, value}, states) ? value : no_number;
+    return record({t, state, value}, states) ? value : no_number;
 }
 
 std::size_t Witness::fill(std::span<const double> times, std::span<double> out) {
@@ -131,7 +131,7 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
         const std::size_t good = function_->fill(times, out);
         if (good < times.size()) return good;
         std::size_t i = 0;
-        while (i < good && heard({times[i], {}, out[i]}, {}) && (asked_ < next_ || repeat_one())) ++i;
+        while (i < good && record({times[i], {}, out[i]}, {}) && (asked_ < next_ || repeat_one())) ++i;
         if (i == good) return good;
     }
     out[0] = no_number;
@@ -162,45 +162,48 @@ bool has_functions(const model::Oscillator& system) {
     return model::user_law(system.friction()) != nullptr || system.spring().as<model::springs::UserSpring>() != nullptr;
 }
 
-std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller& controller, auto&& heard) {
+std::shared_ptr<model::UserFunction> with_witness_inside(const model::Controller& controller, auto&& with_witness) {
     if (const auto* delayed = dynamic_cast<const model::DelayedController*>(&controller)) {
         auto own = std::make_shared<model::DelayedController>();
-        own->function = heard(delayed->function);
+        own->function = with_witness(delayed->function);
         own->by = delayed->by;
         return own;
     }
     const auto* relay = dynamic_cast<const model::RelayController*>(&controller);
     if (relay == nullptr || relay->function == nullptr) return nullptr;
-    return model::copied(*relay, heard(relay->function));
+    return model::copied(*relay, with_witness(relay->function));
 }
 
 }  // namespace
 
-std::shared_ptr<model::UserFunction> Witnesses::heard(const std::shared_ptr<model::UserFunction>& function,
-                                                      std::string who, const char* argument, std::size_t more_states) {
+std::shared_ptr<model::UserFunction> Witnesses::with_witness(const std::shared_ptr<model::UserFunction>& function,
+                                                             std::string who, const char* argument,
+                                                             std::size_t more_states) {
     witnesses_.push_back(
         std::make_shared<Witness>(function, testimony_, std::move(who), argument, states_ + more_states));
     return witnesses_.back();
 }
 
-model::Excitation Witnesses::heard(const model::Excitation& excitation, const std::string& who) {
+model::Excitation Witnesses::with_witness(const model::Excitation& excitation, const std::string& who) {
     return excitation.with_functions([&](const std::shared_ptr<model::UserFunction>& function) {
         if (const auto* controller = dynamic_cast<const model::Controller*>(function.get())) {
             // A sampled controller is evaluated in order and may have a memory.
-            const auto inside = with_witness_inside(*controller, [&](const auto& inner) { return heard(inner, who); });
+            const auto inside =
+                with_witness_inside(*controller, [&](const auto& inner) { return with_witness(inner, who); });
             return inside == nullptr ? function : inside;
         }
-        return heard(function, who);
+        return with_witness(function, who);
     });
 }
 
-model::Drive Witnesses::heard(model::Drive drive, const Called& called) {
-    for (std::size_t i = 0; i < drive.loads.size(); ++i) drive.loads[i] = heard(drive.loads[i], called("M", i));
-    for (std::size_t j = 0; j < drive.belts.size(); ++j) drive.belts[j] = heard(drive.belts[j], called("belt", j));
-    drive.base = heard(drive.base, "base");
-    for (model::OwnState& state : drive.states) state.rate = heard(state.rate, "states." + state.name + ".rate");
+model::Drive Witnesses::with_witness(model::Drive drive, const Called& called) {
+    for (std::size_t i = 0; i < drive.loads.size(); ++i) drive.loads[i] = with_witness(drive.loads[i], called("M", i));
+    for (std::size_t j = 0; j < drive.belts.size(); ++j)
+        drive.belts[j] = with_witness(drive.belts[j], called("belt", j));
+    drive.base = with_witness(drive.base, "base");
+    for (model::OwnState& state : drive.states) state.rate = with_witness(state.rate, "states." + state.name + ".rate");
     for (model::WantedEvent& event : drive.events) {
-        event.when = heard(event.when, event.name.empty() ? "an event" : "the event " + event.name);
+        event.when = with_witness(event.when, event.name.empty() ? "an event" : "the event " + event.name);
     }
     return drive;
 }
@@ -208,19 +211,19 @@ model::Drive Witnesses::heard(model::Drive drive, const Called& called) {
 UnderOath::UnderOath(const model::Oscillator& system, const model::Drive& drive)
     : witnesses_(drive.states.size()),
       system_(system),
-      drive_(witnesses_.heard(drive, [](const char* what, std::size_t) { return std::string(what); })) {
+      drive_(witnesses_.with_witness(drive, [](const char* what, std::size_t) { return std::string(what); })) {
     model::OscillatorParameters parameters = system.parameters();
-    const auto heard = [this](const char* who, const char* argument) {
-        return [=, this](const auto& function) { return witnesses_.heard(function, who, argument); };
+    const auto with_witness = [this](const char* who, const char* argument) {
+        return [=, this](const auto& function) { return witnesses_.with_witness(function, who, argument); };
     };
     if (parameters.friction)
-        parameters.friction = model::with_functions(*parameters.friction, heard("friction", "speed"));
-    parameters.spring = model::with_functions(parameters.spring, heard("spring", "theta"));
+        parameters.friction = model::with_functions(*parameters.friction, with_witness("friction", "speed"));
+    parameters.spring = model::with_functions(parameters.spring, with_witness("spring", "theta"));
     if (!has_functions(system)) return;
     if (auto made = model::Oscillator::make(parameters)) system_ = *made;
 }
 
-void Witnesses::ask_others_after(Witness& writer) {
+void Witnesses::repeat_others_after(Witness& writer) {
     if (writer.read() != nullptr) return;
     for (const bool last : {false, true}) {
         if (!writer.repeat_end(last)) return;
@@ -234,7 +237,7 @@ void Witnesses::ask_others_after(Witness& writer) {
 std::optional<model::Contradiction> Witnesses::verdict(bool whole) {
     if (whole) {
         for (const auto& witness : witnesses_) witness->repeat_kept();
-        for (const auto& writer : witnesses_) ask_others_after(*writer);
+        for (const auto& writer : witnesses_) repeat_others_after(*writer);
     }
     testimony_->over = true;
     return testimony_->found;

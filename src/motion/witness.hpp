@@ -77,7 +77,7 @@ private:
     void keep_milestone(const Answer& answer, std::span<const double> states);
     bool repeats_answer(std::size_t place);
     bool repeat_one();
-    bool heard(const Answer& answer, std::span<const double> states);
+    bool record(const Answer& answer, std::span<const double> states);
 
     std::shared_ptr<model::UserFunction> function_;
     std::shared_ptr<Testimony> testimony_;
@@ -102,19 +102,20 @@ public:
     /// `states` is the number of arguments besides t, theta and velocity.
     explicit Witnesses(std::size_t states) : states_(states) {}
 
-    std::shared_ptr<model::UserFunction> heard(const std::shared_ptr<model::UserFunction>& function, std::string who,
-                                               const char* argument = "t", std::size_t more_states = 0);
-    model::Excitation heard(const model::Excitation& excitation, const std::string& who);
+    std::shared_ptr<model::UserFunction> with_witness(const std::shared_ptr<model::UserFunction>& function,
+                                                      std::string who, const char* argument = "t",
+                                                      std::size_t more_states = 0);
+    model::Excitation with_witness(const model::Excitation& excitation, const std::string& who);
     /// Returns the name of a load or belt: "M" of the first body may be "M.motor".
     using Called = std::function<std::string(const char* what, std::size_t part)>;
-    model::Drive heard(model::Drive drive, const Called& called);
+    model::Drive with_witness(model::Drive drive, const Called& called);
     /// Ends the run and returns the contradiction, if any. `whole`: the run did not fail.
     [[nodiscard]] std::optional<model::Contradiction> verdict(bool whole);
 
 private:
     /// A variable that one function writes may have had the same value in all evaluations of another one, such as on a
     /// run of one stretch. So the writer is evaluated early and late, and the others after it. A formula cannot write.
-    void ask_others_after(Witness& writer);
+    void repeat_others_after(Witness& writer);
 
     std::shared_ptr<Testimony> testimony_ = std::make_shared<Testimony>();
     std::vector<std::shared_ptr<Witness>> witnesses_ = {};

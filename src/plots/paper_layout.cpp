@@ -84,7 +84,7 @@ std::vector<LegendEntry> legend_of(const Figure& figure) {
 
 /// Arranges the entries in lines of this width: a few in one line, many in columns, read downwards. Their y is
 /// negative, 0 at the top. Returns the number of lines.
-int flow(std::vector<LegendEntry>& entries, double width) {
+int arrange_in_lines(std::vector<LegendEntry>& entries, double width) {
     if (entries.empty()) {
         return 0;
     }
@@ -212,7 +212,7 @@ void place(PaperPanel& panel, double left, double width, double height, double i
     panel.right = std::max(panel.right, panel.left + 2 * em);
     panel.legend = legend_of(figure);
     const double title = figure.title.empty() ? 0 : 1.5 * em;
-    double above = 0.5 * em + flow(panel.legend, panel.right - panel.left) * line_height + title;
+    double above = 0.5 * em + arrange_in_lines(panel.legend, panel.right - panel.left) * line_height + title;
     // on a sheet too small for both, the legend is dropped rather than the curves
     if (height - above < panel.bottom + 3 * em) {
         panel.legend.clear();
@@ -283,7 +283,7 @@ PaperSize complete(PaperSize size, const std::vector<Pile>& piles) {
                 // A long legend gets additional space.
                 std::vector<LegendEntry> entries = legend_of(*figure);
                 const double width = size.width * pixels_per_cm / static_cast<double>(piles.size()) - 6 * em;
-                const double legend = flow(entries, width) * line_height / pixels_per_cm;
+                const double legend = arrange_in_lines(entries, width) * line_height / pixels_per_cm;
                 all += (pile.size() > 1 ? 4.4 : single && figure->equal ? 7.6 : 5.6) + legend;
             }
             most = std::max(most, all);

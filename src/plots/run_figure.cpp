@@ -49,7 +49,7 @@ std::string full_symbol(std::string_view name) {
 }
 
 std::string axis_label(const RunData& run, std::string_view name) {
-    return model::of_unit(full_symbol(name), run.units.of(symbol_of(name).quantity));
+    return model::name_with_unit(full_symbol(name), run.units.of(symbol_of(name).quantity));
 }
 
 text::Expected<Numbers> plain_column(const RunData& run, std::string_view name) {
@@ -188,10 +188,10 @@ text::Expected<Figure> figure_of_columns(const RunData& run, const std::string& 
     if (names.size() == 1) {
         figure.y.label = axis_label(run, names.front());
     } else if (alike) {
-        figure.y.label = model::of_unit(std::string(first.symbol), run.units.of(first.quantity));
+        figure.y.label = model::name_with_unit(std::string(first.symbol), run.units.of(first.quantity));
     } else {
-        figure.y.label =
-            first.quantity == Quantity::torque ? model::of_unit("torque", run.units.M) : run.units.of(first.quantity);
+        figure.y.label = first.quantity == Quantity::torque ? model::name_with_unit("torque", run.units.M)
+                                                            : run.units.of(first.quantity);
         figure.y.names_curves = first.quantity != Quantity::torque;
     }
     if (across == "t") {

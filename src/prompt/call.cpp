@@ -173,7 +173,7 @@ int call(lua_State* L, int arguments, int results) {
     {
         const lua::InterruptScope armed(L);
         status = lua_pcall(L, arguments, results, function);
-        lua::settle_refusal();
+        lua::stop_after_refusal();
     }
     lua_remove(L, function);
     if (const std::string limit = lua::reached_limit(); !limit.empty()) {  // even if a pcall has swallowed the error

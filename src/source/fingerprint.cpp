@@ -352,7 +352,7 @@ void note_names(const lua::Prototype& function, int environment, CodeFacts& fact
     for (const auto& constant : texts) facts.perhaps.emplace_back(constant.text);
 }
 
-void note(const lua::Prototype& function, int environment, CodeFacts& facts) {
+void add_facts(const lua::Prototype& function, int environment, CodeFacts& facts) {
     const auto digest = [&facts](std::string_view bytes) { facts.digest = digest_of(bytes, facts.digest); };
     digest(function.frame);
     digest(function.code);
@@ -364,7 +364,7 @@ void note(const lua::Prototype& function, int environment, CodeFacts& facts) {
     }
     for (const std::string_view variable : function.variables) digest(variable);
     note_names(function, environment, facts);
-    for (const lua::Prototype& inner : function.inner) note(inner, environment_within(inner, environment), facts);
+    for (const lua::Prototype& inner : function.inner) add_facts(inner, environment_within(inner, environment), facts);
 }
 
 }  // namespace
@@ -374,7 +374,7 @@ std::optional<CodeFacts> facts_of_code(std::string_view dumped, int environment)
     if (!function) return std::nullopt;
     CodeFacts facts;
     facts.digest = digest_start;
-    note(*function, environment, facts);
+    add_facts(*function, environment, facts);
     return facts;
 }
 

@@ -157,7 +157,7 @@ struct PointLoop {
             ++watch.task;
         }
         const int status = lua_pcall(L, 1, 1, handler);
-        lua::settle_refusal();
+        lua::stop_after_refusal();
         const std::size_t place = number - work.first;
         if (work.max_time > 0 && is_given_up(place)) return true;
         if (status != LUA_OK && lua::interrupt_requested()) return false;
@@ -318,7 +318,7 @@ private:
     }
 
     void start(std::vector<std::thread>& threads) {
-        const lua::SignalsForOthers blocked;
+        const lua::NoSignalsForNewThreads blocked;
         for (const lua::OwnedState& state : states_) {
             {
                 const std::lock_guard lock(ending_);

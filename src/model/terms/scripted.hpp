@@ -65,7 +65,7 @@ public:
     /// The first known jump or kink after t; `never` if unknown.
     virtual double next_break(double /*t*/) { return never; }
     /// The latest end of an interval from t on in which the function has no detail between samples; `never` if unknown.
-    virtual double told_until(double /*t*/) { return never; }
+    virtual double known_until(double /*t*/) { return never; }
     /// Returns whether its conditions on theta, velocity and states are known.
     virtual bool has_pieces() { return false; }
     /// Decides the piece at this moment. Existing decisions stay, except those that depend on a variable in `again`.

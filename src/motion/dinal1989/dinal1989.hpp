@@ -16,7 +16,7 @@ struct Dinal1989 {
     Stop stop = Stop::listing;
     bool slip = false;  ///< whether stage 3 uses the wrong index, as chapter 6 of the report did
 
-    static constexpr bool asks_in_order = true;
+    static constexpr bool evaluates_in_order = true;
     static const MethodText about;
     [[nodiscard]] std::optional<text::Error> wrong_for(const model::Oscillator& system,
                                                        const model::Excitation& excitation) const;

@@ -21,7 +21,7 @@ std::optional<double> SampledLoads::at(std::size_t body, double x) {
 Balances::Balances(const Mechanics& mechanics, Conditions& conditions, const Flow& solver)
     : mechanics_(mechanics), conditions_(conditions), solver_(solver) {
     has_feedback_ = std::any_of(mechanics.loads().begin(), mechanics.loads().end(),
-                                [](const Signal& load) { return load.asks_the_motion(); });
+                                [](const Signal& load) { return load.depends_on_motion(); });
     for (std::size_t j = 0; j < mechanics.joints(); ++j) has_feedback_ |= mechanics.spring_may_jump(j);
     for (const model::Body& body : mechanics.system().bodies) inertia_ += body.inertia;
     belts_.assign(mechanics.joints(), 0), rates_ = belts_, offsets_.assign(mechanics.bodies(), 0);

@@ -26,7 +26,7 @@ void Breaks::pass(double t, double end) {
         found_.erase(found_.begin());
     }
     for (const Signal& load : mechanics_.loads()) {
-        if (!load.asks_in_time() || !found_.empty()) continue;
+        if (!load.changes_in_time() || !found_.empty()) continue;
         const auto value = [&](double at) { return load.of_time({at, Side::at, {}}); };
         if (const auto next = passed_.next(end, value)) found_.push_back(*next);
     }

@@ -51,7 +51,7 @@ private:
     };
     struct Box;
 
-    void ask();
+    void find_joints_at_rest();
     bool settle(bool all_used);
     bool ride_along(const Frame& frame);
     std::optional<Worst> farthest_beyond();
@@ -92,7 +92,7 @@ private:
         if (projected_ != &frame) by_.projection.apply(now(), frame, now().side());
         projected_ = &frame;
     }
-    void tell(EventKind kind, std::size_t joint) {
+    void report_event(EventKind kind, std::size_t joint) {
         made_.told.push_back({.event = event_at(mechanics_, now(), kind, joint)});
     }
 
@@ -110,7 +110,7 @@ private:
 };
 
 bool Decider::decide() {
-    ask();
+    find_joints_at_rest();
     by_.room.entered = mode().friction;
     found_.holding.assign(joints(), 0);
     const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
@@ -141,7 +141,7 @@ bool Decider::decide() {
 }
 
 /// Finds the joints at slip 0. Initially all of them stick.
-void Decider::ask() {
+void Decider::find_joints_at_rest() {
     asked_.assign(joints(), {});
     for (std::size_t j = 0; j < joints(); ++j) {
         asked_[j].leant = mode().leans[j];
@@ -316,7 +316,7 @@ void Decider::let_go(const Worst& worst) {
     Slipping& how = mode().friction[j];
     if (how.creeps != Motion::stuck && way != how.creeps) {
         how.creeps = Motion::stuck;
-        if (told_) tell(EventKind::stick, j);
+        if (told_) report_event(EventKind::stick, j);
         return;
     }
     if (how.creeps != Motion::stuck) asked_[j].before.held = false;
@@ -362,7 +362,7 @@ Decider::Ways Decider::take_back() {
 void Decider::report() {
     for (std::size_t j = 0; j < joints(); ++j) {
         if (asked_[j].leant != 0 || mode().leans[j] != 0) {
-            if (told_ && memory().of[j].leaned && mode().leans[j] == 0) tell(EventKind::slip, j);
+            if (told_ && memory().of[j].leaned && mode().leans[j] == 0) report_event(EventKind::slip, j);
             if (mode().leans[j] == 0) memory().of[j].leaned = false;
             memory().of[j].arrived = Motion::stuck;
         } else if (asked_[j].asked) {
@@ -381,8 +381,8 @@ void Decider::report(std::size_t j) {
     const Asked& asked = asked_[j];
     const auto kind = contact::event_of(asked.before, way);
     if (!kind) return;
-    tell(*kind, j);
-    Told& told = made_.told.back();
+    report_event(*kind, j);
+    Reported& told = made_.told.back();
     if (*kind == EventKind::slip) {
         told.slid = arrival.slid, told.way = way;
         told.off = std::fabs(asked.pull - arrival.pull), told.size = size(j);

@@ -15,7 +15,7 @@
 namespace dinal::motion::engine {
 
 /// An event reported by a decision.
-struct Told {
+struct Reported {
     model::Event event;
     /// whether a released joint sticks again, which cancels its slip event of the same instant
     bool holds_again = false;
@@ -40,7 +40,7 @@ struct DecisionRoom {
     std::vector<Slipping> entered;  ///< friction at the start of the decision
     TorqueSizes sizes;              ///< torques at the start of the decision
     Balance balance;
-    std::vector<Told> told;
+    std::vector<Reported> told;
 };
 
 /// The parts of a run that a decision uses. None of them changes the motion.
@@ -69,7 +69,7 @@ struct Decision {
     bool good = true;  ///< whether all evaluated values are finite
     Now now;           ///< the new modes and velocities
     Contacts contacts;
-    std::vector<Told> told;
+    std::vector<Reported> told;
 };
 
 /// Decides about all joints at slip 0. All joints start as sticking; the one that exceeds its limit the most is

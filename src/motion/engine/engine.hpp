@@ -85,7 +85,7 @@ private:
     bool arrive(double x, bool whole);
     bool sample_controllers();
     void throw_along();
-    bool ask_after_break();
+    bool decide_after_break();
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);
     double kinetic_energy() const;
@@ -161,13 +161,13 @@ private:
     }
     /// Returns false, and ends the run, if events follow each other too often at one time.
     bool goes_on() { return !chatter_.too_often(now_.t.hi) || fail(model::Outcome::chattering); }
-    void tell(model::EventKind kind, std::size_t where) { recorder_->tell(now_, kind, where); }
+    void report_event(model::EventKind kind, std::size_t where) { recorder_->report_event(now_, kind, where); }
     void project(Side when) { projection_.apply(now_, frames_->of(now_.mode), when); }
     /// Returns whether the run is past its start; contacts have no events at the start.
     bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
     std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    std::size_t own_joints() const { return mechanics_.joints() - problem_.hidden; }
     std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
     /// Returns the magnitude of the present torques on the angle of a joint.
     [[nodiscard]] double torque_size(std::size_t joint) {

@@ -39,7 +39,7 @@ bool Engine::handle(const Ending& ending) {
             return cross(ending);
         case By::relay:
             mechanics_.loads()[j].toggle(index(ending.side));
-            tell(EventKind::switched, j);
+            report_event(EventKind::switched, j);
             return decide(true) && goes_on();
         case By::user:
             return act_all(ending.users);
@@ -57,14 +57,14 @@ bool Engine::cross(const Ending& ending) {
     if (const double half = few * crossed.since; half < pace_.h) pace_.make_again(half, pace_.h);
     if (crossed.work != 0)
         recorder_->add_jump(now_.t.hi, crossed.changes.slides.front().joint.value_or(0), {.input = crossed.work});
-    for (const SlideChange& change : crossed.changes.slides) recorder_->tell_slide(now_, change);
+    for (const SlideChange& change : crossed.changes.slides) recorder_->report_slide(now_, change);
     bool goes_on = !crossed.endless || !crossed.jumps;
     if (crossed.back && settle(*crossed.back) != Settles::no) {
         goes_on = true;
     } else if (const auto held = crossed.back ? conditions_->hold(*crossed.back, now_) : std::nullopt) {
         const std::vector<SlideChange>& begun = held->changes.slides;
         recorder_->add_jump(now_.t.hi, begun.front().joint.value_or(0), {.input = held->work});
-        for (const SlideChange& change : begun) recorder_->tell_slide(now_, change);
+        for (const SlideChange& change : begun) recorder_->report_slide(now_, change);
         return restart_contacts(Because::impact);
     }
     if (!goes_on) return fail(Outcome::chattering);
@@ -151,7 +151,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
     const Cause cause{released, told && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);
-    for (const Told& each : made.told) recorder_->tell(each);
+    for (const Reported& each : made.told) recorder_->report_event(each);
     room_.told = std::move(made.told);
     return made.good || fail(Outcome::excitation_not_finite);
 }
@@ -194,7 +194,7 @@ bool Engine::open_and_close() {
             // if it sticks from now on, a stick is reported
             contacts_.slide(mechanics_, now_, j, Motion::forward, true);
         }
-        if (begun()) tell(opens ? EventKind::opened : EventKind::closed, j);
+        if (begun()) report_event(opens ? EventKind::opened : EventKind::closed, j);
     }
     return changed;
 }
@@ -230,8 +230,8 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
     how.leaving = false;
     if (held || how.way != way) {
         const bool told = why == Because::belt ? begun() : why == Because::impact && j != at;
-        if (held && told) tell(EventKind::slip, j);
-        if (!held && why == Because::belt) tell(EventKind::turn, j);
+        if (held && told) report_event(EventKind::slip, j);
+        if (!held && why == Because::belt) report_event(EventKind::turn, j);
         contacts_.slide(mechanics_, now_, j, way, false);
     } else if (const model::Friction& law = problem_.system.joints[j].friction.law; law.ranges() > 0) {
         const model::SpeedRange range = law.range(how.range);  // the speed may have jumped out of the range
@@ -291,14 +291,14 @@ void Engine::press(std::size_t joint, int side) {
     const double stored = (side != 0 ? -1 : 1) * stops.stiffness * depth * depth / 2;
     recorder_->add_jump(now_.t.hi, joint, {.impacts = stored, .kept = -stored});
     now_.mode.presses[joint] = side;
-    tell(side != 0 ? EventKind::impact : EventKind::released, joint);
+    report_event(side != 0 ? EventKind::impact : EventKind::released, joint);
 }
 
 void Engine::let_slide(std::size_t slider, Motion way) {
     const Mechanics::Slider& own = mechanics_.sliders()[slider];
     now_.mode.sliders[slider] = way;
     if (way != Motion::stuck) now_.y[own.bend] = model::sign_of(way) * own.limit / own.stiffness;
-    tell(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, own.joint);
+    report_event(way == Motion::stuck ? EventKind::slider_sticks : EventKind::slider_slips, own.joint);
 }
 
 /// Makes sliders stick whose slip has reversed in a jump of velocities. Returns whether there were any.

@@ -65,7 +65,7 @@ void Engine::rows_at_end(SampledLoads& sampled) {
 /// Returns the outcome if nothing moves at the end, otherwise empty.
 std::optional<Outcome> Engine::at_rest() {
     const Frame& present = frames_->of(now_.mode);
-    bool still = true, for_good = !mechanics_.asks_functions() && !problem_.joined_elsewhere;
+    bool still = true, for_good = !mechanics_.samples_functions() && !problem_.joined_elsewhere;
     for (std::size_t i = 0; i < n(); ++i) {
         still = still && present.bodies[i].empty() && (now_.y[n() + i] == 0 || problem_.joined_elsewhere);
     }

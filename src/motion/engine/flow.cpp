@@ -31,7 +31,7 @@ Flow::Flow(const Mechanics& mechanics, double tolerance, double longest)
       proofs_(mechanics) {
     sizes_.all.resize(n_), fastest_.belts.resize(mechanics.joints()), fastest_.rates.resize(m_), room_.rate.resize(m_);
     for (auto* of : {&offsets_.velocities, &offsets_.rates, &offsets_.ways}) of->resize(n_);
-    mechanics.for_each_signal([this](const Signal& s) { tells_rests_ = tells_rests_ && s.tells_rests(); });
+    mechanics.for_each_signal([this](const Signal& s) { takes_rests_ = takes_rests_ && s.takes_rests(); });
 }
 
 Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
@@ -198,7 +198,7 @@ bool Flow::evaluate(Segment& s, const Mode& mode, const Frame& frame, std::size_
     for (std::size_t i = 0; i < mechanics_.joints(); ++i) {
         std::copy(s.loads[i].data() + first, s.loads[i].data() + end, s.driven[i].data() + first);
         const Signal& load = mechanics_.loads()[i];
-        if (load.asks_the_motion()) {
+        if (load.depends_on_motion()) {
             each_node([&](std::size_t j, const Moment& at) { s.driven[i][j] += load.of_motion(at); });
         }
         if (i < n_) std::copy(s.driven[i].data() + first, s.driven[i].data() + end, s.torques[i].data() + first);
@@ -389,7 +389,7 @@ void Flow::note(const Segment& s, const Series& series, double scale, double all
 double Flow::lost_of_torques(const Segment& s, std::size_t body) const {
     double sum = 0;
     bool friction_changes = false;
-    for (std::size_t j = 0; j < mechanics_.joints() && !tells_rests_; ++j) {
+    for (std::size_t j = 0; j < mechanics_.joints() && !takes_rests_; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const bool acts = j == body || (!mechanics_.loads()[j].none() && joint.is_on(body));
         if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late(s), s.h, sizes_.all[body]);
@@ -437,7 +437,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         if (is_compared(joint, mode)) {
             const Series& series = s.holding_series[joint];
             const double torques = std::max(size_at(joint), held),
-                         lost = (tells_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
+                         lost = (takes_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
             note(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
@@ -537,7 +537,7 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
     if (2 * s.h <= too_short_to_look * longest_) return true;
     const bool seen = s.start.until(proofs_.seen()) > 0 && proofs_.seen() < s.end;
     const bool scripts = std::any_of(mechanics_.loads().begin(), mechanics_.loads().end(), [&](const Signal& load) {
-        return load.asks_in_time() && (seen || proofs_.failed_last() || !load.is_read());
+        return load.changes_in_time() && (seen || proofs_.failed_last() || !load.is_read());
     });
     if (!scripts && !mechanics_.nonlinear()) return true;
     std::vector<Series> loads(mechanics_.joints());
@@ -549,7 +549,7 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
     // Up to this time functions are known by the series of the last stretch, which was sampled between its nodes.
     double looked = seen || mechanics_.nonlinear() ? -model::never : model::never;
     for (const Signal& load : mechanics_.loads()) {
-        if (load.asks_in_time()) looked = std::min(looked, load.kept_until());
+        if (load.changes_in_time()) looked = std::min(looked, load.kept_until());
     }
     if (seen) places.push_back(s.start.until(proofs_.seen()) / s.h - 1);
     for (const std::size_t j : looked_into) places.push_back((cheb::nodes[j] + cheb::nodes[j + 1]) / 2);
@@ -559,7 +559,7 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
         if (t < looked) continue;
         mechanics_.loads_of_time(t, Side::at, room_.load);
         for (std::size_t i = 0; i < loads.size(); ++i) {
-            if (!mechanics_.loads()[i].asks_in_time()) continue;
+            if (!mechanics_.loads()[i].changes_in_time()) continue;
             const double size = size_at(i), lost = lost_in_time(loads[i], std::fabs(s.end), s.h, size);
             const double noise = noise_.floor().noise[mechanics_.system().joints[i].first()];
             const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
@@ -617,7 +617,7 @@ std::optional<double> Flow::found_break(const Segment& s) const {
         const auto& of_bodies = mechanics_.loads();
         const bool looked =
             std::any_of(of_bodies.begin(), of_bodies.end(), [&](const Signal& load) { return &load == &signal; });
-        if (looked || !signal.has_script() || (signal.asks_the_motion() && !signal.samples_the_motion())) return;
+        if (looked || !signal.has_script() || (signal.depends_on_motion() && !signal.samples_the_motion())) return;
         const auto value = [&](double t, Side side) {
             return signal.of_time({t, side, {}}) + of_motion(signal, t, side);
         };

@@ -47,8 +47,8 @@ public:
         return noise_.found(segment, mode, tolerance_, sizes_.all, proofs_);
     }
     /// Returns whether all loads can be evaluated between two doubles of the time, so that no stretch is too short.
-    [[nodiscard]] bool tells_rests() const {
-        return tells_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
+    [[nodiscard]] bool takes_rests() const {
+        return takes_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
     [[nodiscard]] const Noise& noise() const { return noise_; }
     /// Returns the noise of the torques on a stretch; the share of a load that slides has the rounding of all of them.
@@ -145,7 +145,7 @@ private:
     [[nodiscard]] double size_at(std::size_t joint) const;
     [[nodiscard]] std::vector<double> passed_on(const Segment& segment, const Frame& frame) const;
 
-    bool tells_rests_ = true;  ///< whether all loads can be evaluated between two doubles of the time
+    bool takes_rests_ = true;  ///< whether all loads can be evaluated between two doubles of the time
     double bad_time_ = 0;
     std::vector<double> allowed_;  ///< allowed error of each body's acceleration
     Proofs proofs_;

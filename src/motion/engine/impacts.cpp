@@ -55,7 +55,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     contacts_.of[joint].leaves_wall = true;
     const auto stands = [&] {
         if (now_.mode.leans[joint] != wall || contacts_.of[joint].leaned) return;
-        tell(EventKind::stick, joint);
+        report_event(EventKind::stick, joint);
         contacts_.of[joint].leaned = true;
     };
     if (stayed && before == 0) {
@@ -68,7 +68,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     }
     const Impulses::Thrown thrown = impulses_.along(joint, now_);
     if (is_driven(joint, thrown)) return fail(Outcome::blocked);
-    tell(EventKind::impact, joint);
+    report_event(EventKind::impact, joint);
     constexpr int most_low = 32, few_heights = 64;
     const double unresolved = 4 * rounding * (std::fabs(place) + own.size(now_.y));
     const double since = now_.t.hi - std::exchange(walls_.impact[joint], now_.t.hi);
@@ -164,7 +164,7 @@ void Engine::leave_walls(const std::vector<char>& stopped) {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const double v = mechanics_.velocity(j, now_.y);
         if (now_.mode.leans[j] == 0 || v == 0 || (!stopped.empty() && stopped[j] != 0)) continue;
-        if (contacts_.of[j].leaned && now_.mode.leans[j] * v < 0) tell(EventKind::slip, j);
+        if (contacts_.of[j].leaned && now_.mode.leans[j] * v < 0) report_event(EventKind::slip, j);
         now_.mode.leans[j] = 0, contacts_.of[j].leaned = false, contacts_.of[j].leaves_wall = true;
     }
 }
@@ -180,7 +180,7 @@ bool Engine::act_all(const std::vector<std::size_t>& told) {
 
 bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
     const model::WantedEvent& wanted = problem_.drive.events[event];
-    recorder_->tell_user(now_, event);
+    recorder_->report_user_event(now_, event);
     if (wanted.act != nullptr) {
         const std::vector<double> before = now_.y;
         const std::vector<double> values = users_.values(now_.here());

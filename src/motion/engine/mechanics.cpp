@@ -337,7 +337,7 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
     : system_(system), drive_(drive), base_(drive.base, &asking) {
     for (std::size_t j = 0; j < joints(); ++j) {
         loads_.emplace_back(j < drive.loads.size() ? drive.loads[j] : model::Excitation(), &asking);
-        nonlinear_ |= loads_.back().asks_the_motion();
+        nonlinear_ |= loads_.back().depends_on_motion();
     }
     for (const model::OwnState& state : drive.states) rates_.emplace_back(&asking, state.rate.get(), 0);
     for (const model::WantedEvent& event : drive.events) whens_.emplace_back(&asking, event.when.get(), 0);
@@ -351,12 +351,12 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         for (const std::size_t side : {0U, 1U}) {
             if (friction.sliding[side]) contact.sliding[side] = Signal(*friction.sliding[side], &asking);
             if (friction.holding[side]) contact.holding[side] = Signal(*friction.holding[side], &asking);
-            nonlinear_ |= contact.sliding[side].asks_the_motion();
+            nonlinear_ |= contact.sliding[side].depends_on_motion();
             contact.varies |= !contact.holding[side].none() && contact.holding[side].constant_from() == model::never;
         }
         if (friction.normal) contact.normal = Signal(*friction.normal, &asking);
         contact.varies |= !friction.is_constant();
-        nonlinear_ |= contact.normal.asks_the_motion() || friction.function != nullptr ||
+        nonlinear_ |= contact.normal.depends_on_motion() || friction.function != nullptr ||
                       friction.law.depends_on_speed() || !joint.spring.none() || joint.stops ||
                       !friction.sliders.empty();
         const auto* user = friction.law.as<laws::UserLaw>();
@@ -409,7 +409,7 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         add(c.normal);
     }
     add(base_);
-    has_functions_ = asks_functions() || !rates_.empty() || !whens_.empty();
+    has_functions_ = samples_functions() || !rates_.empty() || !whens_.empty();
     for (std::size_t j = 0; j < joints(); ++j)
         has_functions_ = has_functions_ || asked_spring(j).function != nullptr || asked_law(j).function != nullptr;
 }
@@ -617,7 +617,7 @@ void Mechanics::add_native_friction(std::size_t joint, const Mode& mode, const N
 void Mechanics::torques(const Moment& at, const Mode& mode, const std::vector<double>& belts,
                         std::vector<double>& loads, std::vector<double>& of_bodies) const {
     for (std::size_t j = 0; j < joints(); ++j) {
-        if (loads_[j].asks_the_motion()) loads[j] += loads_[j].of_motion(at);
+        if (loads_[j].depends_on_motion()) loads[j] += loads_[j].of_motion(at);
     }
     of_bodies.assign(loads.begin(), loads.begin() + static_cast<std::ptrdiff_t>(bodies()));
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -760,9 +760,9 @@ void Mechanics::forget_failure() const {
     each_function([](model::UserFunction& function) { function.forget_failure(); });
 }
 
-bool Mechanics::asks_functions() const {
+bool Mechanics::samples_functions() const {
     bool asks = false;
-    for_each_signal([&](const Signal& s) { asks = asks || s.asks_functions(); });
+    for_each_signal([&](const Signal& s) { asks = asks || s.samples_functions(); });
     return asks;
 }
 

@@ -265,7 +265,7 @@ public:
     double view(double t, double spacing) const;
     bool may_go_on() const;
     void forget_failure() const;
-    bool asks_functions() const;
+    bool samples_functions() const;
     /// Returns whether there is any user function.
     bool has_functions() const { return has_functions_; }
     /// The greatest natural frequency of a linear system with these groups, rad per time unit; 0 without springs. An

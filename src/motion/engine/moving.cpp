@@ -27,7 +27,7 @@ public:
         return cheb::value(own.slope, (t - from) / own.h - 1);
     }
     double next_break(double t) override { return angle_.next_break(t); }
-    double told_until(double t) override {
+    double known_until(double t) override {
         constexpr double beside = 1e-9;  // fraction of a piece: a time this close to its end belongs to the next one
         const auto& [from, own] = piece_at(t);
         return own.to - t > beside * own.h ? own.to : piece_at(own.to).second.to;
@@ -145,7 +145,7 @@ private:
             double allowed =
                 (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
             if (const double rounded = unseen_.rounded(); std::isfinite(rounded)) allowed += few_roundings * rounded;
-            if (unseen_.is_told(allowed, 0)) continue;
+            if (unseen_.is_shown(allowed, 0)) continue;
             const auto found = unseen_.search({}, search_budget, [=](const Series&) { return allowed; });
             if (found.place) told = Told::strays;
             if (!found.place && !found.proven) told = Told::unknown;

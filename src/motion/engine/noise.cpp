@@ -42,7 +42,7 @@ Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
     std::fill(may_be_rough_.begin() + static_cast<std::ptrdiff_t>(n), may_be_rough_.end(), 1);
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
         const model::Joint& joint = mechanics.system().joints[j];
-        if (!mechanics.loads()[j].asks_functions() && joint.spring.none() && joint.friction.is_constant() &&
+        if (!mechanics.loads()[j].samples_functions() && joint.spring.none() && joint.friction.is_constant() &&
             !joint.friction.law.depends_on_speed())
             continue;
         for (const model::Weight& weight : joint.of) may_be_rough_[weight.body] = 1;
@@ -111,8 +111,8 @@ std::optional<double> Noise::measured(std::size_t i, const Asked& asked, std::ve
     const Segment& s = asked.segment;
     const std::size_t n = mechanics_.bodies();
     const double of_all = cheb::tail(cheb::fit(acting(s, i)));
-    const bool of_time = i < n && mechanics_.loads()[i].asks_functions() && !mechanics_.loads()[i].asks_the_motion() &&
-                         2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
+    const bool of_time = i < n && mechanics_.loads()[i].samples_functions() &&
+                         !mechanics_.loads()[i].depends_on_motion() && 2 * cheb::tail(cheb::fit(s.driven[i])) >= of_all;
     const Nodes& values = of_time ? s.driven[i] : acting(s, i);
     const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
     const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});

@@ -189,7 +189,7 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
         if (range && range->is_one() && std::isfinite(range->lo)) constant_rates_.push_back(range->lo);
     }
     if (constant_rates_.size() < m_) constant_rates_.clear();
-    affine_ = even_friction_ && !load.asks_the_motion() && constant_rates_.size() == m_;
+    affine_ = even_friction_ && !load.depends_on_motion() && constant_rates_.size() == m_;
     const bool remembers = load.relays() > 0 || !load.delays().empty() || load.has_sampled();
     // Rows of a named body include accelerations, which plain steps compute from these torques only.
     possible_ = possible_ && !remembers && !mechanics.may_open(0) && !mechanics.has_normal(0) && !joint_.rigid &&
@@ -439,7 +439,8 @@ bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
     if (calm_until(of, i, i + 1) == i) return false;
     const double x = TurnInStep(motion, h, *zero).x, t = steps_.time(n + i) + x;
     const model::State there{motion(x).theta, 0};
-    of.recorder.tell({.event = {.t = t, .kind = model::EventKind::turn, .theta = there.theta, .M = M_at(i, t, there)}});
+    of.recorder.report_event(
+        {.event = {.t = t, .kind = model::EventKind::turn, .theta = there.theta, .M = M_at(i, t, there)}});
     of.recorder.head(0, -direction);
     return true;
 }

@@ -27,20 +27,20 @@ Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& resu
     }
     history_ = std::make_shared<History>(std::move(weights), n(), start.y, start.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
-    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (told_joints() - n()) + problem.hidden +
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (own_joints() - n()) + problem.hidden +
                                 mechanics.states_of_user() + (problem.joined_elsewhere ? 0 : n());
     Growing<double> table(problem.rows.count(), columns);
     cells_ = table.writable();
     result.rows = Rows(std::move(table));
 }
 
-void Recorder::tell_user(const Now& now, std::size_t event) {
-    for (std::size_t j = 0; j < told_joints(); ++j) {
-        tell(now, EventKind::user, j, static_cast<int>(event));
+void Recorder::report_user_event(const Now& now, std::size_t event) {
+    for (std::size_t j = 0; j < own_joints(); ++j) {
+        report_event(now, EventKind::user, j, static_cast<int>(event));
     }
 }
 
-void Recorder::tell(const Told& told) {
+void Recorder::report_event(const Reported& told) {
     constexpr double clearly_later = 1e-3;
     const Event& event = told.event;
     if (told.holds_again && is_none(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
@@ -54,13 +54,13 @@ void Recorder::write_recent() {
     recent_.clear();
 }
 
-void Recorder::tell_slide(const Now& now, const SlideChange& change) {
+void Recorder::report_slide(const Now& now, const SlideChange& change) {
     if (!(now.t.hi > problem_.window.start)) return;
     const auto [own, other] = change.begins ? std::pair(EventKind::slide_begins, EventKind::slide_ends)
                                             : std::pair(EventKind::slide_ends, EventKind::slide_begins);
-    for (std::size_t j = 0; j < told_joints(); ++j) {
+    for (std::size_t j = 0; j < own_joints(); ++j) {
         if (change.joint && *change.joint != j) continue;
-        if (!is_none(other, j, now.t.hi)) tell(now, own, j);
+        if (!is_none(other, j, now.t.hi)) report_event(now, own, j);
     }
 }
 
@@ -115,7 +115,7 @@ void Recorder::record_turns(const Stretch& of, double until, const TorqueSizes& 
     }
     const auto earlier = [](const Event& a, const Event& b) { return a.t < b.t; };
     if (turns.size() > 1) std::stable_sort(turns.begin(), turns.end(), earlier);
-    for (const Event& turn : turns) tell({.event = turn});
+    for (const Event& turn : turns) report_event({.event = turn});
 }
 
 void Recorder::record_turns(std::size_t body, const Segment& segment, double until, double nothing,
@@ -242,7 +242,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         row.damping = problem_.system.joints[i].damping;
         for_each_column<body_columns>(put_column);
     }
-    for (std::size_t j = n(); j < told_joints(); ++j) {
+    for (std::size_t j = n(); j < own_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
         double torque = -mechanics_.joint_torque(j, at, now.mode, belt);
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
@@ -254,7 +254,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         row.damping = problem_.system.joints[j].damping;
         for_each_column<link_columns>(put_column);
     }
-    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
         const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
         good = put(balance_.holding[j] + more * balance_.accelerations[body]) && good;
@@ -311,7 +311,7 @@ std::vector<Kept::JointTorques> Recorder::acting(const Now& now, const Segment& 
     for (std::size_t j = 0; j < all.size(); ++j) {
         all[j].M = segment.driven[j];
         // Functions of the motion were last evaluated before the final step of the iteration.
-        for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].asks_the_motion(); ++node) {
+        for (std::size_t node = 0; node < node_count && mechanics_.loads()[j].depends_on_motion(); ++node) {
             all[j].M[node] = segment.loads[j][node] + mechanics_.loads()[j].of_motion(segment.moment(node, point_));
         }
         if (j < n()) {
@@ -323,7 +323,7 @@ std::vector<Kept::JointTorques> Recorder::acting(const Now& now, const Segment& 
             }
         }
         all[j].holds = now.rubs(j) && now.mode.leans[j] == 0 && now.mode.friction[j].way == Motion::stuck;
-        if (j >= told_joints()) {  // the torque that moves a prescribed body counts as its input
+        if (j >= own_joints()) {  // the torque that moves a prescribed body counts as its input
             const std::size_t body = moved_body(j);
             const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
             for (std::size_t node = 0; node < node_count; ++node) {

@@ -27,18 +27,20 @@ public:
     // Events. Recent events are held back, because later ones may withdraw them: a released joint does not move, a
     // slide ends at once, a stick is shorter than rounding, or the run gets stuck. They are written when a clearly
     // later event arrives.
-    void tell(const Told& told);
-    void tell(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
-        tell({.event = event_at(mechanics_, now, kind, where, user)});
+    void report_event(const Reported& told);
+    void report_event(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
+        report_event({.event = event_at(mechanics_, now, kind, where, user)});
     }
     /// Reports a user's event, once for each joint with the joint's angle and velocity.
-    void tell_user(const Now& now, std::size_t event);
-    bool told_user_at(double t) const { return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t; }
+    void report_user_event(const Now& now, std::size_t event);
+    bool has_user_event_at(double t) const {
+        return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
+    }
     /// Reports that a load, or the rate of a state (for all joints), begins or ends to slide along a condition. A begin
     /// and an end at the same instant cancel, and a continued run does not report a begin at its start.
-    void tell_slide(const Now& now, const SlideChange& change);
+    void report_slide(const Now& now, const SlideChange& change);
     /// Withdraws the slip of a joint that was released at this time but did not move.
-    void tell_no_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
+    void withdraw_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
     /// Records the turns of bodies without dry friction, which do not affect the motion. `sizes` and `noise` of the
     /// torques determine which velocities count as zero.
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
@@ -89,7 +91,7 @@ private:
 
     std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    std::size_t told_joints() const { return mechanics_.joints() - problem_.hidden; }
+    std::size_t own_joints() const { return mechanics_.joints() - problem_.hidden; }
     std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
 
     const Request& problem_;

@@ -40,7 +40,7 @@ Engine::Engine(const Request& problem, Run& result)
       contacts_{.of = std::vector<Contacts::Of>(mechanics_.joints())},
       walls_(problem.system),
       breaks_(mechanics_),
-      projection_(mechanics_, told_joints()),
+      projection_(mechanics_, own_joints()),
       impulses_(mechanics_),
       users_(mechanics_, problem.drive.events),
       normal_halves_(mechanics_.joints(), 0) {
@@ -129,7 +129,7 @@ void Engine::begin() {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
             contacts_.of[j].creeping = event_at(mechanics_, now_, EventKind::stick, j);
         }
-        if (now_.after_break) ask_after_break();
+        if (now_.after_break) decide_after_break();
     }
     recorder_->begin(now_);
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) walls_.reach[j] = std::fabs(mechanics_.angle(j, now_.y));
@@ -221,7 +221,7 @@ bool Engine::take_plain_steps() {
 bool Engine::solve(const Frame& frame) {
     using Attempt = Flow::Attempt;
     const std::vector<double>& departing = now_.departing(problem_.system, scratch_.departing);
-    for (const SlideChange& change : conditions_->ceased(now_)) recorder_->tell_slide(now_, change);
+    for (const SlideChange& change : conditions_->ceased(now_)) recorder_->report_slide(now_, change);
     conditions_->decide({now_.t.hi, now_.side(), departing}, now_.mode, segment_);
     segment_.low = now_.low;
     const Attempt attempt = solver_->solve(segment_, now_.mode, frame, now_.y, departing);
@@ -229,7 +229,7 @@ bool Engine::solve(const Frame& frame) {
     if (problem_.step > 0 && resolved && mechanics_.has_belts() && belt_jump_found()) return false;
     const double late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
     const bool short_of_seen = 2 * segment_.h <= std::max(shortest * pace_.unit, 16 * rounding * late);
-    if (attempt == Attempt::shorten && !solver_->tells_rests() && short_of_seen) {
+    if (attempt == Attempt::shorten && !solver_->takes_rests() && short_of_seen) {
         if (chatter_.too_many_short()) return fail(Outcome::chattering);
         solver_->pass_over(segment_);
         solver_->find_limits(segment_, now_.mode);
@@ -287,7 +287,7 @@ Ending Engine::watch(const Frame& frame) {
     if (!guards.good()) fail(Outcome::excitation_not_finite);
     for (const std::size_t joint : guards.stay()) hold_again(joint, sizes_.on(joint_at(joint)));
     if (guards.thrown_back()) {
-        if (!recorder_->told_user_at(now_.t.hi)) recorder_->tell_user(now_, *guards.thrown_back());
+        if (!recorder_->has_user_event_at(now_.t.hi)) recorder_->report_user_event(now_, *guards.thrown_back());
         fail(Outcome::chattering);
     }
     if (ending.x > -1 && ending.x < 1 && segment_.time(ending.x) >= segment_.end) ending.x = 1;
@@ -297,7 +297,7 @@ Ending Engine::watch(const Frame& frame) {
 /// Makes a joint stick again that was released but did not move: its slip is withdrawn, and it needs a clearly larger
 /// pull.
 void Engine::hold_again(std::size_t joint, double torques) {
-    recorder_->tell_no_slip(joint, now_.t.hi);
+    recorder_->withdraw_slip(joint, now_.t.hi);
     std::erase(contacts_.last_full, joint);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
@@ -422,7 +422,7 @@ bool Engine::arrive(double x, bool whole) {
     project(at_break ? Side::before : Side::at);
     if (!sample_controllers()) return fail(Outcome::excitation_not_finite);
     const bool changed = open_and_close();
-    if (now_.after_break) return ask_after_break();
+    if (now_.after_break) return decide_after_break();
     return !changed || (decide(true) && goes_on());
 }
 
@@ -441,26 +441,26 @@ bool Engine::sample_controllers() {
 void Engine::throw_along() {
     if (problem_.hidden == 0) return;
     Mode sticking = now_.mode;
-    for (std::size_t j = 0; j < told_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
+    for (std::size_t j = 0; j < own_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
     project(now_.side());
     now_.mode = std::move(sticking);
 }
 
 /// Decides contacts again after a break, at which loads, limits and belts may have jumped.
-bool Engine::ask_after_break() {
+bool Engine::decide_after_break() {
     if (!mechanics_.has_belts()) return decide(true);
     // A jump of a prescribed velocity throws all bodies that are linked to it rigidly.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
     throw_along();
-    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
         const double v = now_.y[n() + body], jump = v - before[n() + body];
         if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
         recorder_->add_jump(now_.t.hi, body, {.input = kinetic_energy() - energy});
         recorder_->head(body, v);
         conditions_->forget();
-        tell(EventKind::impact, body);
+        report_event(EventKind::impact, body);
         break;
     }
     return restart_contacts(Because::belt);
@@ -480,8 +480,8 @@ void Engine::add_work_of_moved(std::size_t joint, double before, double lost) {
     if (problem_.hidden == 0) return;
     const double now = kinetic_energy(), work = now - before + lost;
     if (!(std::fabs(work) > 64 * rounding * (now + before + lost))) return;
-    std::size_t body = moved_body(told_joints());
-    for (std::size_t j = told_joints(); j < mechanics_.joints(); ++j) {
+    std::size_t body = moved_body(own_joints());
+    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
         if (joint_at(joint).is_on(moved_body(j))) body = moved_body(j);
     }
     recorder_->add_jump(now_.t.hi, body, {.input = work});
@@ -562,26 +562,28 @@ Run run(const Request& problem) {
     const auto of = [&](const char* what, std::size_t joint) {
         return system.named ? fmt::format("{}.{}", what, system.joints[joint].name) : std::string(what);
     };
-    const model::Drive drive = witnesses.heard(problem.drive, of);
+    const model::Drive drive = witnesses.with_witness(problem.drive, of);
     for (std::size_t i = 0; i < system.bodies.size(); ++i) {
         if (auto& moved = system.bodies[i].moved) {
-            moved->motion = witnesses.heard(moved->motion, of(moved->by_angle ? "theta" : "velocity", i));
+            moved->motion = witnesses.with_witness(moved->motion, of(moved->by_angle ? "theta" : "velocity", i));
         }
     }
     for (std::size_t j = 0; j < system.joints.size(); ++j) {
         model::Joint& joint = system.joints[j];
         for (auto& sliding : joint.friction.sliding) {
-            if (sliding) sliding = witnesses.heard(*sliding, of("Rd", j));
+            if (sliding) sliding = witnesses.with_witness(*sliding, of("Rd", j));
         }
         for (auto& holding : joint.friction.holding) {
-            if (holding) holding = witnesses.heard(*holding, of("Re", j));
+            if (holding) holding = witnesses.with_witness(*holding, of("Re", j));
         }
-        if (joint.friction.normal) joint.friction.normal = witnesses.heard(*joint.friction.normal, of("normal", j));
+        if (joint.friction.normal)
+            joint.friction.normal = witnesses.with_witness(*joint.friction.normal, of("normal", j));
         if (joint.friction.function != nullptr) {
-            joint.friction.function = witnesses.heard(joint.friction.function, of("friction", j), "t", 1);
+            joint.friction.function = witnesses.with_witness(joint.friction.function, of("friction", j), "t", 1);
         }
         if (const auto* spring = joint.spring.as<model::springs::UserSpring>()) {
-            joint.spring = model::springs::UserSpring{witnesses.heard(spring->function, of("spring", j), "theta")};
+            joint.spring =
+                model::springs::UserSpring{witnesses.with_witness(spring->function, of("spring", j), "theta")};
         }
     }
     Run result = run_plain(problem.on(system, drive));

@@ -126,10 +126,10 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         const bool controller = part.sampled != nullptr || part.relay != nullptr || part.delayed != nullptr;
         if (!controller) part.function = std::get_if<model::Scripted>(&c.term);
         part.of_motion = part.function != nullptr && part.function->feedback;
-        asks_the_motion_ |= part.of_motion;
+        depends_on_motion_ |= part.of_motion;
         const bool switches_by_function = part.relay != nullptr && part.relay->function != nullptr;
-        asks_functions_ |= part.function != nullptr || part.delayed != nullptr || switches_by_function;
-        asks_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
+        samples_functions_ |= part.function != nullptr || part.delayed != nullptr || switches_by_function;
+        changes_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
         if (part.of_motion) {
             const Piecewise made(asking_, part.function->function.get(), part.function->delay);
             if (made.has_pieces()) held_.push_back(parts_.size());
@@ -150,14 +150,14 @@ double Signal::value_of(std::size_t i, const Moment& at) const {
     if (part.piecewise) return part.piecewise->value(at);
     if (part.function != nullptr) {
         const double t = towards(at.t - part.function->delay, at.side);
-        return asking_->ask_at(*part.function->function, t, at.y);
+        return asking_->evaluate_at(*part.function->function, t, at.y);
     }
     if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
     if (part.sampled != nullptr) return memory_[i].output;
     if (part.delayed != nullptr) {
         // A delayed jump returns at a rounded time, so the past is evaluated slightly before or after it.
         const double t = towards(at.t, at.side);
-        return asking_->ask_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
+        return asking_->evaluate_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
     }
     const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
     return std::visit(
@@ -286,7 +286,7 @@ bool Signal::arrive(const Moment& at) {
         take();
         while (instant() <= at.t) {
             sampled->function->use(memory.own);
-            const double output = asking_->ask_at(*sampled->function, at.t, at.y);
+            const double output = asking_->evaluate_at(*sampled->function, at.t, at.y);
             if (!std::isfinite(output)) return false;
             memory.pending.emplace_back(instant() + sampled->delay, output);
             ++memory.instant;
@@ -305,7 +305,8 @@ Signal::Switching Signal::switching(std::size_t relay) const {
 
 double Signal::until_switch(std::size_t relay, const Moment& at) const {
     const auto [sign, level, place] = switching(relay);
-    const double measured = place ? at.y[*place] : asking_->ask_at(*parts_[relays_[relay]].relay->function, at.t, at.y);
+    const double measured =
+        place ? at.y[*place] : asking_->evaluate_at(*parts_[relays_[relay]].relay->function, at.t, at.y);
     return sign * (measured - level);
 }
 

@@ -52,10 +52,10 @@ struct Asking {
     /// Returns the motion at an earlier time, for delayed terms.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
-    double ask(model::UserFunction& function, const Moment& at) const {
-        return ask_at(function, towards(at.t, at.side), at.y);
+    double evaluate(model::UserFunction& function, const Moment& at) const {
+        return evaluate_at(function, towards(at.t, at.side), at.y);
     }
-    double ask_at(model::UserFunction& function, double t, std::span<const double> y) const {
+    double evaluate_at(model::UserFunction& function, double t, std::span<const double> y) const {
         if (y.empty()) return function.value(t, {});  // depends on time only
         return function.value_with(t, state(y), states(y));
     }
@@ -110,7 +110,7 @@ public:
     double value(const Moment& at) const {
         if (slide_) return sliding(at);
         if (law_) return value(at, law_->way * law_->slip(at));
-        if (piece_.conditions.empty() || at.freely) return asking_->ask_at(*function_, time(at), at.y);
+        if (piece_.conditions.empty() || at.freely) return asking_->evaluate_at(*function_, time(at), at.y);
         return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
     }
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
@@ -219,14 +219,14 @@ public:
 
     bool none() const { return parts_.empty(); }
     /// Returns whether some function depends on the motion.
-    bool asks_the_motion() const { return asks_the_motion_; }
+    bool depends_on_motion() const { return depends_on_motion_; }
     /// Returns whether some function is known only at sampled points.
-    bool asks_functions() const { return asks_functions_; }
+    bool samples_functions() const { return samples_functions_; }
     /// Returns whether some function may change at any time, also while the motion does not.
-    bool asks_in_time() const { return asks_in_time_; }
+    bool changes_in_time() const { return changes_in_time_; }
     bool has_script() const { return excitation_.has_script(); }
     /// Returns whether it is a user's function of time alone, which its series on a stretch represents.
-    bool is_sampled() const { return asks_in_time_ && of_time_only_; }
+    bool is_sampled() const { return changes_in_time_ && of_time_only_; }
     double value(const Moment& at) const { return of_time(at) + of_motion(at); }
     /// The part that depends on time only, including controllers that hold a value.
     double of_time(const Moment& at) const {
@@ -234,7 +234,7 @@ public:
         if (at.t != asked_last_.t || at.side != asked_last_.side) asked_last_ = {at.t, at.side, sum(at, false)};
         return asked_last_.M;
     }
-    double of_motion(const Moment& at) const { return asks_the_motion_ ? sum(at, true) : 0; }
+    double of_motion(const Moment& at) const { return depends_on_motion_ ? sum(at, true) : 0; }
     /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
     void sample(const NodeTimes& when, Nodes& out) const;
     /// Keeps the series of sampled functions of a resolved stretch, if it has decayed to `tolerance`. A next stretch
@@ -246,10 +246,10 @@ public:
     double view(double t, double spacing) const { return excitation_.view(t, spacing); }
     double constant_from() const { return excitation_.constant_from(); }
     /// Returns whether it can be evaluated between neighbouring times.
-    bool tells_rests() const { return excitation_.tells_rests(); }
+    bool takes_rests() const { return excitation_.takes_rests(); }
     /// An upper bound of its magnitude.
     double most() const {
-        return asks_the_motion_ || model::has_memory(excitation_) ? model::never : excitation_.most();
+        return depends_on_motion_ || model::has_memory(excitation_) ? model::never : excitation_.most();
     }
     void each_function(const std::function<void(model::UserFunction&)>& call) const { excitation_.each_function(call); }
     const std::vector<double>& delays() const { return delays_; }
@@ -370,7 +370,7 @@ private:
     std::vector<Memory> memory_;
     std::vector<std::size_t> relays_, held_;
     std::vector<double> delays_;
-    bool asks_the_motion_ = false, asks_functions_ = false, asks_in_time_ = false, of_time_only_ = true;
+    bool depends_on_motion_ = false, samples_functions_ = false, changes_in_time_ = false, of_time_only_ = true;
     /// whether everything that does not depend on the motion is a controller that holds its value for ever
     bool is_held_ = true;
     mutable model::Spread spread_{.places = cheb::nodes};

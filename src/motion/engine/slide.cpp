@@ -90,12 +90,12 @@ void Slides::Sliding::each(const F& call) const {
     for (Piecewise* other : along) call(*other);
 }
 
-void Slides::Sliding::ask(Which which) const {
+void Slides::Sliding::use_side(Which which) const {
     each([which](Piecewise& one) { one.sliding().asked = which; });
 }
 
 /// Adds the begin or end of the slide of each load, or of a rate if no load slides.
-void Slides::Sliding::tell(bool begins, std::vector<SlideChange>& changes) const {
+void Slides::Sliding::add_changes(bool begins, std::vector<SlideChange>& changes) const {
     for (const std::size_t loaded : joints) changes.push_back({loaded, begins});
     if (joints.empty()) changes.push_back({std::nullopt, begins});
 }
@@ -152,14 +152,14 @@ Slides::Side Slides::side_of(const Sliding& of, const Moment& at, std::vector<do
 Slides::Mixing Slides::mixing(std::vector<const Sliding*> of, const Moment& at) const {
     Mixing all{.of = std::move(of)};
     std::vector<Which> before;
-    for (const Sliding* each : all.of) before.push_back(each->function->sliding().asked), each->ask(Which::own);
+    for (const Sliding* each : all.of) before.push_back(each->function->sliding().asked), each->use_side(Which::own);
     all.own = rates_at(at);
     for (const Sliding* each : all.of) {
-        each->ask(Which::beyond);
+        each->use_side(Which::beyond);
         all.beyond.push_back(rates_at(at));
-        each->ask(Which::own);
+        each->use_side(Which::own);
     }
-    for (std::size_t k = 0; k < all.of.size(); ++k) all.of[k]->ask(before[k]);
+    for (std::size_t k = 0; k < all.of.size(); ++k) all.of[k]->use_side(before[k]);
     return all;
 }
 
@@ -532,10 +532,10 @@ bool Slides::others_jump(const Sliding& of, const Now& now, const Sides& sides) 
         if (k < 2 * n) ahead[k - n] += unit_ * away, behind[k - n] -= unit_ * away;
         jump += std::fabs(change);
     }
-    of.ask(Which::own);
+    of.use_side(Which::own);
     const std::vector<double> rates_ahead = rates_at({now.t.hi, now.side(), ahead}),
                               rates_behind = rates_at({now.t.hi, now.side(), behind});
-    of.ask(Which::both);
+    of.use_side(Which::both);
     for (std::size_t k = n; k < now.y.size(); ++k) other += std::fabs(rates_ahead[k] - rates_behind[k]);
     return other > clearly * jump;
 }
@@ -558,7 +558,7 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& 
     const auto sides = decide(*owner, now, first->mixed());
     if (!sides || !drive_back(*owner, now, *sides) || others_jump(*owner, now, *sides)) return no();
     sliding_.push_back(*owner);
-    owner->tell(true, begun.changes.slides);
+    owner->add_changes(true, begun.changes.slides);
     owner->each([&](Piecewise& each) { begun.changes.functions.push_back(&each); });
     return begun;
 }
@@ -583,7 +583,7 @@ void Slides::renew(Now& now, std::vector<SlideChange>& changes) {
         sliding_.erase(slide_of(*was.function));
         if (begin(*was.function, {.jump = was.jump, .of_place = was.of_place}, now)) continue;
         was.each([](Piecewise& each) { each.let_go(); });
-        was.tell(false, changes);
+        was.add_changes(false, changes);
     }
 }
 
@@ -596,7 +596,7 @@ void Slides::end_lost(const Now& now, std::vector<SlideChange>& changes) {
         sliding_.erase(slide_of(*was.function));
         was.each([&](Piecewise& each) { each.leave(leaves ? 1 : 0); });
         left_at_ = now.t.hi, left_ = was;
-        was.tell(false, changes);
+        was.add_changes(false, changes);
     }
 }
 
@@ -638,7 +638,7 @@ bool Slides::leave(Piecewise& function, std::size_t condition, Now& now, Changes
     }
     was.each([condition](Piecewise& each) { each.leave(condition); });
     if (condition <= 1) left_at_ = now.t.hi, left_ = was;
-    was.tell(false, changes.slides);
+    was.add_changes(false, changes.slides);
     return true;
 }
 
@@ -646,7 +646,7 @@ std::vector<SlideChange> Slides::end() {
     std::vector<SlideChange> changes;
     for (const Sliding& sliding : sliding_) {
         sliding.each([](Piecewise& each) { each.let_go(); });
-        sliding.tell(false, changes);
+        sliding.add_changes(false, changes);
     }
     sliding_.clear();
     return changes;

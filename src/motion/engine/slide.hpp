@@ -105,8 +105,8 @@ private:
         template <class F>
         void each(const F& call) const;
         [[nodiscard]] bool has(const Piecewise& one) const;
-        void ask(Piecewise::Slide::Side which) const;
-        void tell(bool begins, std::vector<SlideChange>& changes) const;
+        void use_side(Piecewise::Slide::Side which) const;
+        void add_changes(bool begins, std::vector<SlideChange>& changes) const;
     };
     [[nodiscard]] bool others_jump(const Sliding& of, const Now& now, const Sides& sides) const;
     [[nodiscard]] bool passes_fade(const Sliding& of, const Now& now, const Sides& sides);

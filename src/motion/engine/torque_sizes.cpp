@@ -9,7 +9,7 @@ void TorqueSizes::find(const Mechanics& mechanics, const Segment& last, const Mo
     for (std::size_t j = 0; j < mechanics.joints(); ++j) {
         double load = last.loads.empty() ? 0 : greatest(last.loads[j]);
         // A load that depends on the motion may be 0 now but not slightly later.
-        if (!last.loads.empty() && mechanics.loads()[j].asks_the_motion()) {
+        if (!last.loads.empty() && mechanics.loads()[j].depends_on_motion()) {
             load = std::max(load, greatest(last.driven[j]));
         }
         const double size = load + mechanics.size_of(j, at);

@@ -61,7 +61,7 @@ Series on_part(const Series& series, double middle, double half) {
 
 }  // namespace
 
-bool Unseen::is_told(double allowed, double part) {
+bool Unseen::is_shown(double allowed, double part) {
     constexpr double close = 1e-9;
     // conditions that do not depend on the motion change at breaks only
     const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();
@@ -261,7 +261,7 @@ bool StretchProof::found(const Unseen::Found& what) {
 /// Tests the prepared formula. The error may be `allowed` or the fraction `part` of the value; `size` scales the
 /// rounding of time.
 void StretchProof::look(double size, double allowed, double part) {
-    if (unseen_.is_told(allowed, part)) return;
+    if (unseen_.is_shown(allowed, part)) return;
     // In a decayed motion the function's own constants still round.
     constexpr double few_roundings = 16;
     const double rounded = few_roundings * unseen_.rounded();

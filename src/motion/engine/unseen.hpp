@@ -25,7 +25,7 @@ public:
 
     /// Returns whether the formula certainly deviates from its series by at most `allowed` or the fraction `part` of
     /// its value, and the operands of its piece's conditions by little as well.
-    [[nodiscard]] bool is_told(double allowed, double part);
+    [[nodiscard]] bool is_shown(double allowed, double part);
 
     struct Found {
         std::optional<double> place = {};  ///< a point with a larger deviation than allowed

@@ -144,7 +144,7 @@ private:
     bool along_lines();
     void rest_along(double until);
     void move_along(double until);
-    bool tell_line(double h, double M, model::State end, double start_pull);
+    bool write_line_of_record(double h, double M, model::State end, double start_pull);
     bool end_line(double h, double M, model::State state, bool standing, double start_pull = 0);
 
     /// The cost of the arcs since the last call of the monitor, in radians of their parts; lines of a record are cheap.

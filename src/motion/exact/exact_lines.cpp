@@ -120,7 +120,7 @@ void ExactEngine::move_along(double until) {
         if (kept || next_row < t[i + 1]) {
             stand();
             const double end = Clock{theta, rest}.later(y.way).hi;
-            if (!tell_line(h, next_M, {end, y.velocity}, pull_of(k, theta, M, braking))) return;
+            if (!write_line_of_record(h, next_M, {end, y.velocity}, pull_of(k, theta, M, braking))) return;
             next_row = rows_.next_time();
         }
         // The angle is the sum of all displacements; `rest` collects their rounding errors.
@@ -134,7 +134,7 @@ void ExactEngine::move_along(double until) {
 }
 
 /// Writes the rows on a line in motion, and stores its arc.
-bool ExactEngine::tell_line(double h, double M, model::State end, double start_pull) {
+bool ExactEngine::write_line_of_record(double h, double M, model::State end, double start_pull) {
     asked_ = h;
     if (rows_.next_time() < record_.time(1)) {
         model::closed_form(excitation_, clock_.hi, 0, formula_);
