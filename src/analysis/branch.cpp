@@ -138,7 +138,7 @@ public:
         aside.head(n) = algebra::most_shortened(slopes);
         constexpr double away = 1e-2;
         const Vector guess = scaled(*first) + away * aside;
-        const auto there = spot_at(guess);  // on the old branch the slopes do not determine the new one
+        const auto there = spot_at(guess);  // the slopes on the old branch do not determine the new one
         auto next = there ? correct(guess, aside, there->slopes) : std::nullopt;
         if (!next) {
             path_.end = WalkEnd::lost;

@@ -20,8 +20,8 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr std::size_t most_stops = 5;  // the number of stops reported one by one; if there are more, only these:
-constexpr std::size_t first_stops = 2, last_stops = 2;
+constexpr std::size_t most_stops = 5;                   // the most stops that are all reported one by one
+constexpr std::size_t first_stops = 2, last_stops = 2;  // those reported if there are more
 constexpr std::size_t most_turns = 4, most_slides = 3;
 
 constexpr const char* base_text =
@@ -421,7 +421,7 @@ private:
         }
     }
 
-    /// Counts the events of dry sliders behind springs, which are none of the mass.
+    /// Counts the events of dry sliders behind springs, which are not events of the mass.
     void describe_sliders() {
         const auto count = [this](model::EventKind kind) {
             const auto is = [kind](const model::Event& event) { return event.kind == kind; };

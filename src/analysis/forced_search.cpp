@@ -15,8 +15,8 @@ std::optional<Map::Return> ForcedSearch::search(const SteadyQuestion& question, 
         const auto found = ClosedSearch(map(), facts_.maps, periods).at_once(*now, periods, true);
         if (found && complete(*found, false)) return {};
     }
-    std::vector<double> ranges{range()};  // of single periods
-    std::vector<double> sizes;            // of the first batch of returns and both halves of the second
+    std::vector<double> ranges{range()};  // ranges of single periods
+    std::vector<double> sizes;            // ranges of the first batch of returns and of both halves of the second
     constexpr int longest = 32;
     for (const auto& counts : {std::vector<int>{3, 8, 24}, std::vector<int>{40, 120, 320}}) {
         ClosedSearch search(map(), facts_.maps, question.periods > 0 ? periods : longest);

@@ -148,7 +148,7 @@ protected:
     /// Returns whether nothing restores the angle, which may then drift for ever and counts as growing.
     virtual bool is_free() const = 0;
 
-    /// What grows evenly at most doubles in the second half of a search; a greater ratio has no growth for one period.
+    /// A motion that grows evenly at most doubles in the second half of a search; a greater ratio is not linear growth.
     static constexpr double faster = 2.5;
     SteadyMotion facts_;
 

@@ -100,7 +100,7 @@ void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, con
 }  // namespace
 
 std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
-    constexpr double like_noise = 1.5;  // correlation length
+    constexpr double like_noise = 1.5;  // a shorter correlation length counts as white noise
     std::optional<LeastSquares> best = fit_from(question, question.start);
     for (Eigen::Index i = 0; i < question.start.size(); ++i) {
         for (const double begin : question.other_starts[static_cast<std::size_t>(i)]) {

@@ -147,7 +147,7 @@ private:
     /// high. A search may leave this region, where runs take too long and fits are meaningless.
     bool is_seen(const Parameters& p) const {
         const double highest = record_.highest_omega0();
-        constexpr double most = 10;  // ranges of the record between two samples
+        constexpr double most = 10;  // greatest way between two samples, in ranges of the record
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
         return (!seeks_omega0 || p.k <= highest * highest * p.I) &&
                (question_.given.velocity0 || std::fabs(p.velocity0) <= most * record_.range * highest);

@@ -88,8 +88,8 @@ struct Misfit {
 };
 
 struct NoiseKind {
-    bool is_white = true;    ///< without memory
-    bool is_uneven = false;  ///< stronger in some parts of the record than in others
+    bool is_white = true;    ///< whether it has no memory
+    bool is_uneven = false;  ///< whether it is stronger in some parts of the record
 };
 
 /// The most significant structure; empty if all may be noise. `slopes` are the derivatives with respect to the
@@ -97,10 +97,10 @@ struct NoiseKind {
 std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind& noise, std::span<const int> columns,
                                 const Eigen::MatrixXd& slopes, std::span<const Structure> structures);
 
-/// What a term that the fit leaves out, with a coefficient of the prior error `size`, does to the parameters.
+/// The effect on the parameters of a term that the fit leaves out, whose coefficient has the prior error `size`.
 struct Nuisance {
-    Eigen::VectorXd shift;       ///< their change if the term is fitted, too
-    Eigen::MatrixXd covariance;  ///< that of such a fit, in units of noise squared
+    Eigen::VectorXd shift;       ///< change of the parameters if the term is fitted, too
+    Eigen::MatrixXd covariance;  ///< covariance of such a fit, in units of noise squared
 };
 Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorXd& residual, const NoiseMemory& memory,
                   const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole, double noise);

@@ -34,8 +34,8 @@ private:
     /// The noise of one measured column.
     struct Column {
         std::vector<Eigen::Index> rows = {};
-        std::vector<Eigen::VectorXd> weights = {};  ///< of the previous numbers, for as many of them as there are
-        std::vector<double> variances = {};         ///< of what these weights leave
+        std::vector<Eigen::VectorXd> weights = {};  ///< entry n: weights of the n previous numbers
+        std::vector<double> variances = {};         ///< variances that these weights leave
     };
     void learn(Column& column, const Eigen::VectorXd& covariances) const;
 
@@ -52,7 +52,7 @@ Eigen::MatrixXd remembered_covariance(const NoiseMemory& memory, const Eigen::Ma
 Eigen::VectorXd widened_by_memory(const NoiseMemory& memory, const Eigen::MatrixXd& slopes,
                                   const Eigen::VectorXd& whole, double noise);
 
-/// From this mean factor of the errors on its cause is worth a remark.
+/// The mean factor of the errors above which its cause is reported.
 inline constexpr double much_wider = 1.2;
 /// The same factors for noise that is stronger in some parts of the record than in others (estimator HC2 of MacKinnon
 /// and White), or 1 if that makes no error wider by more than chance.

@@ -221,7 +221,7 @@ private:
     std::optional<PeriodMap> whole_, half_;  // made when needed
     bool symmetric_;
     Place start_;
-    double range_ = 0;  // of the last measured period
+    double range_ = 0;  // range of theta in the last measured period
     std::optional<model::Contradiction> contradiction_;
 };
 

@@ -315,7 +315,7 @@ private:
     double way_, range_ = 0;
     std::size_t seen_ = 0;  // number of branches whose births were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
-    std::optional<bool> stays_alike_;  // empty before it is asked
+    std::optional<bool> stays_alike_;  // empty until it is computed
     ResponseCurve curve_;
 };
 

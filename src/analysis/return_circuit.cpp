@@ -139,7 +139,7 @@ public:
                 if (own[i] < 2 * n) {
                     units[place] = own[i] < n ? size : size * omega;
                 } else if (state < drive.states.size()) {
-                    // What a state has come down to when the motion ended is no scale.
+                    // A state that has decayed by the end of the motion gives no scale.
                     units[place] = std::max(std::fabs(x[place]), std::fabs(drive.states[state].start));
                     if (!(units[place] > 1e-9 * size)) units[place] = size;
                 }

@@ -113,9 +113,9 @@ private:
 
     Runs runs_;
     Chart chart_;
-    std::optional<Returns> returns_;  // from period to period
-    double start_ = 0;                // of these periods
-    double range_ = 0;                // of angles in the last measured period
+    std::optional<Returns> returns_;  // map from period to period
+    double start_ = 0;                // time at which these periods start
+    double range_ = 0;                // range of angles in the last measured period
     double farthest_ = 0;             // greatest range of angles in a measured period
     double largest_ = 0;              // greatest angle or velocity of a settling run
 };
@@ -408,7 +408,7 @@ void ReturnSearch::cycle() {
         events += run->events.size();
         const VectorXd range = reach.range();
         most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
-        // Bodies that go round and are driven faster and faster are told by their velocities.
+        // Velocities show whether rotating bodies are driven faster and faster.
         ranges.emplace_back(time, greatest(reach, chart_.any_goes_round() ? 2 * n() : n()));
         largest_ = std::max(largest_, greatest(reach, 2 * n()));
         now = Runs::at_stop(*run);
@@ -592,7 +592,8 @@ void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
     if (!stands && grows_beside(now, run.t_stop)) facts_.stable = false;
     const bool moves = is_moving(now);
     const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
-    if (moves && (stuck || chart_.any_goes_round())) facts_.status = SteadyStatus::steady;  // a belt may carry it
+    if (moves && (stuck || chart_.any_goes_round()))
+        facts_.status = SteadyStatus::steady;  // for example carried by a belt
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;
     if (question().settles < 0)

@@ -230,7 +230,7 @@ motion::Run Runs::run(const model::Drive& drive, double start, double end, const
                                       .limits = limits,
                                       .before = std::move(before),
                                       .longest = question_.longest,
-                                      .keeps_torques = grid.count() > 0});  // only users see those with rows
+                                      .keeps_torques = grid.count() > 0});  // torques are shown with rows only
     if (result.contradiction) contradiction_ = result.contradiction;
     // A spring may overflow in a diverging motion; failures of functions have been reported already.
     const bool flew_away = result.outcome == model::Outcome::excitation_not_finite && question_.is_plain() &&

@@ -281,7 +281,7 @@ private:
 
     SingleSine sine_;
     SineArcs arcs_;
-    double wanted_ = -1e300;                // a phase,
+    double wanted_ = -1e300;                // a phase of the load,
     std::optional<theory::Motion2> found_;  // and the state there, set when next() passes it
 };
 

@@ -108,7 +108,7 @@ bool contracts(const SteadyQuestion& question) {
 
 double distance_from_one(const std::vector<std::complex<double>>& multipliers) {
     double least = model::never;
-    constexpr double far = 1e-3;  // distance from the unit circle, where a disturbance persists
+    constexpr double far = 1e-3;  // this near the unit circle a disturbance persists
     constexpr int most = 32;
     for (const std::complex<double>& multiplier : multipliers) {
         const bool stays = std::fabs(std::abs(multiplier) - 1) <= far;

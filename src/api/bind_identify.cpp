@@ -238,7 +238,7 @@ void take_given(lua_State* L, const lua::Options& options, const IdentifyOptions
     for (const Unknown which : {Unknown::I, Unknown::k, Unknown::C, Unknown::Rd, Unknown::Re, Unknown::offset}) {
         if (at(is_free, which) || question.gives(which)) continue;
         if (which != Unknown::I && which != Unknown::k) {
-            at(question.given, which) = 0;  // an Re below Rd is raised to Rd
+            at(question.given, which) = 0;  // for Re, 0 means Rd
         } else if (question.M) {
             options.fail(text::error("{} is neither given nor in free", analysis::name(which)));
         }

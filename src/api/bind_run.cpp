@@ -1004,7 +1004,7 @@ int continue_run(lua_State* L) {
     return 1;
 }
 
-// run:save(file): file kind, columns, and the comment block from which the run can be repeated.
+// ---- run:save(file): the kind of file, its columns, and the comments that repeat the run
 
 namespace {
 

@@ -89,8 +89,7 @@ text::Expected<Written> write_file(const std::string& path, std::string_view tex
 void set_stop_question(bool (*question)() noexcept) noexcept;
 [[nodiscard]] bool shall_stop() noexcept;
 
-// A file to which lines are appended atomically, also by several programs at once.
-
+/// A file to which lines are appended atomically, also by several programs at once.
 class Journal {
 public:
     /// Creates the file if missing. Open it before files are confined, as it may be anywhere.

@@ -116,7 +116,7 @@ private:
 /// Makes that thread check for a stop request. It must not have been joined.
 void nudge(pthread_t worker) noexcept;
 
-/// While this object lives, new threads receive no signal except a nudge: Ctrl-C is for the program's own thread.
+/// While this object lives, new threads block all signals except nudge(): Ctrl-C is for the program's own thread.
 class NoSignalsForNewThreads : text::NotCopied {
 public:
     NoSignalsForNewThreads();

@@ -952,7 +952,7 @@ double Formula::next_break(double t) {
 double Formula::next_break(double t, Breaks which) {
     constexpr double end_of_time = 1e300;
     if (!of_time_ || gave_up_ || !(std::fabs(t) < end_of_time)) return never;
-    const double found = search(t + 0.0, which);  // not -0
+    const double found = search(t + 0.0, which);  // + 0.0 turns -0 into 0
     // A long series of breaks with tiny jumps comes from rounding or truncated digits: it counts as roughness, not
     // as events.
     constexpr int most_alike = 30;

@@ -118,7 +118,7 @@ private:
         if (std::max(from, stored) < until) *to = last_[column];
     }
 
-    /// The memory for rows after the first `kept`: behind them, or a new one with spare room.
+    /// The memory for rows after the first `kept`: the present one if it has room behind them, otherwise a new one.
     std::shared_ptr<Store> store_for(std::size_t kept, std::size_t rows, std::size_t columns, std::size_t most) const {
         const bool free = store_ != nullptr && store_->used == std::min(kept, placed()) && rows <= store_->room;
         if (free) return store_;

@@ -132,14 +132,14 @@ private:
     const model::Excitation& excitation_;
     bool feedback_;
     double constant_from_, most_M_;
-    double start_;  // nothing is an event at this time
+    double start_;  // start of the run, which is never an event
     double at_once_, pace_;
     std::vector<model::Event>* events_;
 
     model::Motion motion_;
     Phase phase_ = Phase::moving;
-    model::Motion came_ = model::Motion::stuck;  // direction before it stuck,
-    double M_stuck_ = 0;                         // and M then
+    model::Motion came_ = model::Motion::stuck;  // direction before it stuck
+    double M_stuck_ = 0;                         // M when it stuck
     double torques_before_;                      // sum of torques at the last stop
     Standstill crept_{};                         // when it began to creep
     double apart_ = 0;                           // tolerance of M around the balance of a creep

@@ -89,7 +89,7 @@ struct Run {
     bool began_open = false;               ///< whether nothing pressed on the contact until it closed
     bool on_belt = false;                  ///< whether turns of theta are not recorded as events, as on a belt
     double restitution = 1;                ///< fraction of the speed kept at an impact on a wall
-    std::shared_ptr<const Course> course;  ///< null if declined, or if the run was read from a file
+    std::shared_ptr<const Course> course;  ///< the motion between the rows; null if it was not kept
 
     /// Returns whether the jumps dominate the duration of the computation.
     bool jumps_often() const {

@@ -88,10 +88,10 @@ struct Figure {
     std::string title = {};
     bool below = false;  ///< whether it stands below the previous figure with a common x axis
     Axis x, y;
-    bool equal = false;    ///< whether units are equally long on both axes
-    bool axes = true;      ///< whether to draw frame, ticks, labels and grid
-    bool ends = false;     ///< on paper: whether names are at the ends of lines instead of in the legend
-    bool circles = false;  ///< about the origin through the ticks: equal energy in a phase plane
+    bool equal = false;                         ///< whether units are equally long on both axes
+    bool axes = true;                           ///< whether to draw frame, ticks, labels and grid
+    bool ends = false;                          ///< whether paper shows names at the ends of lines instead of a legend
+    bool circles = false;                       ///< whether to draw circles of equal energy in a phase plane
     std::shared_ptr<const Shades> shades = {};  ///< a map behind everything else
     std::vector<Curve> curves;
     std::vector<Mark> marks;

@@ -762,7 +762,7 @@ private:
             const std::size_t middle = label_width_ + 2 + column;
             const std::size_t start = middle - std::min(middle, text.size() / 2);
             const bool fits = start + text.size() <= static_cast<std::size_t>(format_.columns);
-            // otherwise the label would touch its neighbour
+            // A label that would touch its neighbour is left out.
             if (fits && (numbers.width() == 0 || start > numbers.width())) {
                 numbers.pad(start);
                 numbers.add(text);

@@ -344,7 +344,7 @@ bool key_arrived() {
         arrived = ppoll(&input, 1, nullptr, &before) > 0;
     }
     sigprocmask(SIG_SETMASK, &before, nullptr);
-    rl_check_signals();  // raises the signal again for the note, with the terminal restored
+    rl_check_signals();  // restores the terminal and raises the signal for InterruptNote
     if (resized != 0) {
         resized = 0;
         fit_to_window();

@@ -86,7 +86,7 @@ bool run_loaded(lua_State* L, int status, int arguments = 0) {
 int load_text(lua_State* L, std::string_view text, const char* name) {
     const int status = luaL_loadbufferx(L, text.data(), text.size(), name, lua::load_mode());
     if (status == LUA_OK || status == LUA_ERRSYNTAX) {
-        source::keep_source(L, name, text);  // an error needs it, too
+        source::keep_source(L, name, text);  // also on an error, whose message shows its line
     }
     return status;
 }

@@ -110,8 +110,8 @@ struct AffineBlock {
 
     AffineStep map;
     double inverse_inertia;
-    Each<2 * most> times{}, samples{};                   ///< at the middle and end of each step
-    Each<most + 1> M{}, forcing{}, theta{}, velocity{};  ///< at the start of each step
+    Each<2 * most> times{}, samples{};                   ///< values at the middle and end of each step
+    Each<most + 1> M{}, forcing{}, theta{}, velocity{};  ///< values at the start of each step
     Each<most> push_theta{}, push_velocity{};
 };
 

@@ -201,7 +201,7 @@ std::vector<double> Conditions::rounding_of(const Piecewise& function, const Mom
     return rounded;
 }
 
-/// Decides the conditions at this moment. Returns false if the margin of one that is asked may be zero by rounding.
+/// Decides the conditions at this moment. Returns false if the margin of a selected one may be zero by rounding.
 bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked) {
     if (function.is_friction() || function.is_spring() || function.slides()) return false;
     function.decide(at, asked);

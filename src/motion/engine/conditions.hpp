@@ -123,10 +123,10 @@ private:
         return found == last_.end() ? none : found->second;
     }
     bool has_just_crossed(const Piecewise& function, std::uint64_t arguments, double now) const;
-    std::map<std::pair<const Piecewise*, std::size_t>, Last> last_;  ///< for each condition by its step
-    std::map<const Piecewise*, double> crossed_;                     ///< for each function the last time
-    double crossed_at_ = -model::never;                              ///< time of the last crossing of all
-    double within_ = 0;       ///< the same for the conditions about to be crossed
+    std::map<std::pair<const Piecewise*, std::size_t>, Last> last_;  ///< last crossing of each condition, by its step
+    std::map<const Piecewise*, double> crossed_;                     ///< time of the last crossing of each function
+    double crossed_at_ = -model::never;                              ///< time of the last crossing of any condition
+    double within_ = 0;       ///< greatest |margin| that counts as zero at the next crossing
     int small_in_a_row_ = 0;  ///< number of successive small jumps
     double greatest_ = 0;     ///< greatest value or jump so far
     Slides slides_;

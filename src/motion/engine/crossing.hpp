@@ -116,8 +116,8 @@ private:
         double inside(double x) const { return (x - middle) / half; }
         double end() const { return middle + half; }
     };
-    /// The first zero by the series. Where the series is no greater than its own error, as at the foot of a narrow
-    /// window that the square of a wide quantity decides, the function is fitted again on that part alone.
+    /// The first zero by the series. If a part of the series is below the error of the whole, such as a narrow window
+    /// given by the square of a wide quantity, the function is fitted again on that part alone.
     std::optional<double> of_series(Half half, double start) const {
         using namespace cheb;
         constexpr double few = 64;

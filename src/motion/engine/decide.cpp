@@ -269,7 +269,7 @@ double Decider::excess_on_both_sides(std::size_t j, double otherwise, Motion& to
         auto both = both_sides(j, {slip, speed}, now().here());
         if (!both || !both->drive_back) continue;
         const auto of_place = both_sides(j, {slip, {}}, now().here());
-        // In motion, rounding determines the side of the loads at slip 0.
+        // On a moving joint the side on which loads are evaluated at slip 0 is a matter of rounding.
         how.driven_back = speed != rounded && stands(j) && !(of_place && of_place->drive_back);
         if (how.driven_back) both = both_sides(j, {slip, speed}, now().here());
         const auto then = both_sides(j, {slip, speed, gained}, {now().t.hi + later * by_.unit, Side::at, soon});

@@ -47,8 +47,8 @@ void Engine::finish() {
     recorder_->finish(now_, contacts_, std::move(carry));
 }
 
-/// Writes the rows at the end. If a load jumps there, contacts may hold no longer, as they would tell in a longer run.
-/// Where a belt jumps, what sticks to it has still its velocity before.
+/// Writes the rows at the end. If a load jumps there, the rows show the contacts after the jump, as in a longer run.
+/// If a belt jumps there, bodies that stick to it still have its velocity from before the jump.
 void Engine::rows_at_end(SampledLoads& sampled) {
     const bool is_break = segment_.to_break && now_.t.hi >= problem_.window.end;
     if (outcome_ != Outcome::reached_end || !is_break || mechanics_.has_belts()) {

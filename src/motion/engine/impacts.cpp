@@ -12,7 +12,7 @@ using model::Outcome;
 
 namespace {
 
-// Relative to the pace.
+// Relative to the time scale of the motion.
 constexpr double last_bounces = 1e-7, shortest_bounce = 1e-10;
 constexpr double faded_impact = 1e-12;  // relative to the fastest impact at the same time
 
@@ -90,8 +90,8 @@ bool Engine::hit(std::size_t joint, int wall) {
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
         // changes nothing.
-        // A bounce lower than the rounding of the angles is no motion. Between two walls, or where a load jumps beside
-        // the wall, only the past ones tell.
+        // A bounce lower than the rounding of the angles is no motion. Between two walls, or if a load jumps near the
+        // wall, only past bounces show that.
         const bool unseen = e * before * bounces->once <= unresolved || walls_.low[joint] > most_low;
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace || unseen;
         rest = bounces->all < model::never ? bounces->all : bounces->once;

@@ -53,7 +53,7 @@ void Noise::pass(const Segment& s) {
     for (std::size_t k = 0; k < may_be_rough_.size(); ++k) {
         if (may_be_rough_[k] == 0) continue;
         floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
-        // Noise that was found in a short pulse is none of the motion behind it.
+        // Noise found in a short pulse does not belong to the motion after it.
         constexpr double much_longer = 16, far_below = 1.0 / 64;
         double& noise = floor_.noise[k];
         if (!(noise > 0) || !(s.h > much_longer * found_on_[k])) continue;

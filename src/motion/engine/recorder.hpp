@@ -53,7 +53,7 @@ public:
     // Rows.
     /// Writes the rows of a stretch until `end`. Returns false, like the others, if a value is not finite.
     bool rows_until(const Stretch& of, double end, bool to_the_end);
-    /// Writes the rows of the present at the end of a run.
+    /// Writes the rows up to the present time with the present state, at the end of a run.
     bool rows_at_end(const Stretch& of);
     std::size_t next_row() const { return next_row_; }
     double next_row_time() const {

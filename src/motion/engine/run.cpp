@@ -24,7 +24,7 @@ using model::Joint;
 using model::Motion;
 using model::Outcome;
 
-// Relative to the pace.
+// Relative to the time scale of the motion.
 constexpr double shortest = 1e-13;  // shorter times cannot affect the motion
 // margin below the overflow of a series' bounds
 constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;
@@ -104,7 +104,7 @@ void Engine::begin() {
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
         throw_along();
-        // A belt or a moved body takes along from the start what a freewheel keeps from falling behind.
+        // From the start a belt or a moved body carries bodies along that a freewheel keeps from falling behind.
         const std::vector<double> caught = catch_freewheels(true);
         press_stops();
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
@@ -437,7 +437,7 @@ bool Engine::sample_controllers() {
 }
 
 /// Gives bodies the velocity of those with a prescribed motion to which they are linked rigidly. Friction gives no
-/// impulse: what only sticks to a body that is thrown slips.
+/// impulse: a body that only sticks to one whose velocity jumps slips.
 void Engine::throw_along() {
     if (problem_.hidden == 0) return;
     Mode sticking = now_.mode;

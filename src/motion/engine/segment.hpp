@@ -19,7 +19,7 @@ struct Segment : NodeTimes {
     /// whether formulas are proven to do nothing between the nodes that their series do not show
     bool proven = true;
     bool may_grow = true;                      ///< whether the next stretch may be longer than all before
-    bool slides = false;                       ///< whether a load slides: its share has the rounding of all torques
+    bool slides = false;                       ///< whether a load slides, so that it has the rounding of all torques
     bool to_the_end = false;                   ///< whether it ends exactly at `end`, even if 2 h is slightly different
     std::vector<Nodes> y{};                    ///< angles, velocities, states at the nodes
     std::vector<Nodes> f{};                    ///< rates of y; those of the angles are undefined

@@ -11,10 +11,10 @@ using model::Motion;
 
 namespace {
 
-// In units of the pace. Torques hardly change in the first time; crossings closer than the second are lost in the
-// rounding of angles.
+// In units of the time scale of the motion: torques hardly change during last_passages, and crossings closer than
+// shortest_passage are lost in the rounding of angles.
 constexpr double last_passages = 1e-6, shortest_passage = 4e-9;
-// If they shrink more slowly, friction is not what stops the body.
+// If the intervals shrink so slowly that more are needed, it is not friction that stops the body.
 constexpr double most_legs = 1000;
 constexpr double of_rounding = 64 * rounding, clearly_seen = 32;
 

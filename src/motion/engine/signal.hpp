@@ -199,7 +199,7 @@ private:
         return call(time(at), asking_->state(at.y), std::span<const double>(with_speed_));
     }
 
-    /// The speed or angle that a law is asked with; 0 for other functions.
+    /// The speed or angle at which a law is evaluated; 0 for other functions.
     double argument(const Moment& at) const { return law_ ? law_->way * law_->slip(at) : 0; }
 
     const Asking* asking_;

@@ -20,8 +20,8 @@ constexpr double near = 1e-9;
 constexpr double clearly_apart = 1e-12;  // relative to the difference between both sides
 constexpr double way_back = 4;           // rate at which the motion returns to the surface, in the same units
 
-constexpr double short_passage = 1e-5;  // of a place, in the same units
-constexpr double hardly = 1e-9;         // a part of a rate that does not count
+constexpr double short_passage = 1e-5;  // duration of the passage of a place, in time units of the motion
+constexpr double hardly = 1e-9;         // fraction of a rate below which it counts as 0
 
 /// Solves for the shares with which several slides stay on their surfaces. A row has the changes of the rate of one
 /// margin by each share, and then this rate with shares 0. Where contacts hold a surface, no load moves the motion off
@@ -94,7 +94,7 @@ void Slides::Sliding::use_side(Which which) const {
     each([which](Piecewise& one) { one.sliding().asked = which; });
 }
 
-/// Adds the begin or end of the slide of each load, or of a rate if no load slides.
+/// Adds the beginning or end of the slide of each load, or of a rate if no load slides.
 void Slides::Sliding::add_changes(bool begins, std::vector<SlideChange>& changes) const {
     for (const std::size_t loaded : joints) changes.push_back({loaded, begins});
     if (joints.empty()) changes.push_back({std::nullopt, begins});
@@ -104,7 +104,7 @@ bool Slides::Sliding::has(const Piecewise& one) const {
     return function == &one || std::find(along.begin(), along.end(), &one) != along.end();
 }
 
-/// Returns the rates of y with the sides that the sliding functions are asked for.
+/// Returns the rates of y with the selected sides of the sliding functions.
 std::vector<double> Slides::rates_at(const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     std::vector<double> loads, torques, belts(mechanics_.joints());

@@ -72,9 +72,9 @@ public:
 
 private:
     struct Side {
-        double margin = 0, rate = 0;  ///< at a place: of the margin's rate, with a part of the margin
+        double margin = 0, rate = 0;  ///< margin and its rate; at a place, of the margin's rate plus a part of it
         std::vector<double> rates{};  ///< rates of y
-        double off = 0, speed = 0;    ///< of a place: margin and its rate
+        double off = 0, speed = 0;    ///< at a place: the margin itself and its rate
     };
     /// The two sides; rates are those of the own side's margin, which must fall on the own side and rise beyond the
     /// surface.

@@ -217,7 +217,7 @@ private:
     /// Cached factors of time steps, for each level and the latest other lengths, as motions repeat their steps.
     struct Table {
         double longest;             // length of the first level
-        bool has_free = false;      // whether the turns include free motions
+        bool has_free = false;      // whether `turns` has factors of the free motion
         std::vector<Complex> mu{};  // exponents of the resonances
         std::array<std::uint8_t, levels> of_levels;
         std::array<std::uint8_t, 4> latest;
@@ -242,7 +242,7 @@ private:
         double aside = 0;
 
         void set(const PartValues& there, double tau) { aside = 0, values = &there, place = tau; }
-        /// The integral from there to the point aside.
+        /// The integral from `place` to `place + aside`, by the Taylor polynomial of `jet`.
         double further_way() const;
     };
 

@@ -73,7 +73,7 @@ Run Rk4::run(const Problem& problem) const {
     if (replay) replay->checkpoints = Checkpoints<Rk4Checkpoint>(engine.steps().count);
 
     run_whole(engine, problem, rows, events, std::move(replay), run);
-    // Steps that only sample M can not rest where it jumps; the general engine can.
+    // This engine only samples M, so the mass cannot rest on a jump of it; in the general engine it can.
     if (run.outcome == model::Outcome::chattering && problem.drive.M().has_feedback())
         return engine::run(problem, cut());
     const bool samples = problem.drive.M().has_script() || problem.system.spring().as<model::springs::UserSpring>() ||
