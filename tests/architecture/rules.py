@@ -75,7 +75,7 @@ def rooms_are_namespaces():
             continue  # nothing but includes
         own = "::".join(["dinal"] + os.path.dirname(path).split("/")[1:])
         opened = [re.match(r"namespace (dinal[\w:]*) \{", line) for _, line in lines(path)]
-        # A word of another room may be announced (`class X;`), but the room of the file is opened, too.
+        # A class of another room may be declared (`class X;`), but the file also opens its own namespace.
         if not any(m and (m[1] == own or m[1].startswith(own + "::")) for m in opened):
             complain(path, 1, f"what lives here belongs into namespace {own}")
 

@@ -1,4 +1,4 @@
-// What a question costs: steady motions over the plane of frequency and friction, natively and as a sweep in Lua, a
+// The cost of analyses: steady motions over the plane of frequency and friction, natively and as a sweep in Lua, a
 // response curve, and the fit of a free decay.
 #include <benchmark/benchmark.h>
 

@@ -1,4 +1,4 @@
-// Exact under loads of many terms: a record of samples, and Fourier series.
+// The integrator exact under loads of many terms: a record of samples, and Fourier series.
 #include <benchmark/benchmark.h>
 
 #include <cstdlib>

@@ -1,4 +1,4 @@
-// What others need for the same work: each peer in a file of its own.
+// Other solvers for the same work: each peer in a file of its own.
 #pragma once
 
 #include <array>

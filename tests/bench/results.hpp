@@ -1,4 +1,4 @@
-// What was measured, by group and item; the table and the bars are read from here.
+// The measurements by group and item, from which the table and the bars are made.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -14,10 +14,10 @@ namespace bench {
 struct Item {
     std::string group, name;
     std::vector<double> seconds;  ///< of one iteration, one for each repetition
-    double error = -1;            ///< max |u - truth| in units of Mc/k; negative: not asked
-    double count = 0;             ///< of what `per` names, in one iteration
+    double error = -1;            ///< max |u - truth| in units of Mc/k; negative: not computed
+    double count = 0;             ///< number of units named by `per` in one iteration
     std::string per;              ///< "step", "row", "call"; empty: the whole only
-    double calls = 0;             ///< of a Lua function M in one iteration, where they are counted
+    double calls = 0;             ///< calls of a Lua function M in one iteration, if counted
 
     [[nodiscard]] double median() const;
 };

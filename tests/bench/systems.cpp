@@ -1,4 +1,5 @@
-// Systems with more in them, and what M as a Lua function costs where it is not smooth: a row is one script.
+// Systems with states, belts and several bodies, and the cost of an M as a Lua function that is not smooth: a row is
+// one script.
 #include <benchmark/benchmark.h>
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Several bodies: against a judge that knows no modes, and at other resolutions.
+// Several bodies against a plain time stepping, and at other tolerances.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

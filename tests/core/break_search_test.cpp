@@ -1,4 +1,4 @@
-// Where a function kinks, found from its values.
+// The search for a kink of a function from its values.
 #include <array>
 #include <cmath>
 #include <functional>

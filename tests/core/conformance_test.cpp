@@ -1,4 +1,4 @@
-// Every integrator against every reference system: a row for each of them, in which its tolerance says why.
+// Every integrator against every reference system: one row for each integrator, with the reason for its tolerance.
 #include <fmt/format.h>
 
 #include <algorithm>

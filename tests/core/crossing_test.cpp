@@ -1,4 +1,4 @@
-// Where a watched value passes zero, on pieces that no series resolves, too.
+// The zero at which a watched value passes 0, also on pieces that no series resolves.
 #include "motion/engine/crossing.hpp"
 
 #include <cmath>

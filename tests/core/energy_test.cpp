@@ -70,8 +70,7 @@ TEST_CASE("the energy of every reference system adds up", "[energy]") {
     }
 }
 
-TEST_CASE("a run continued after its memory for the motion was full states up to which time the energy is known",
-          "[energy][resume]") {
+TEST_CASE("a run continued after its memory was full states up to which time its energy is known", "[energy][resume]") {
     const Oscillator system = nondimensional(0.05, 0);
     const Excitation M = harmonic(1, 5);
     const Limits little{.memory = 100000};

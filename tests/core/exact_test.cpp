@@ -1,4 +1,4 @@
-// What exact alone promises; tests/core/oracle_test.cpp and tests/lua/scales_test.lua have its motions.
+// Properties of exact alone; tests/core/oracle_test.cpp and tests/lua/scales_test.lua have its motions.
 #include "model/closed_form.hpp"
 #include "support/catch.hpp"
 #include "support/measure.hpp"

@@ -75,7 +75,7 @@ TEST_CASE("gain, sum, delay and window agree with their formulas", "[excitation]
     }
 }
 
-TEST_CASE("the window of a delay and the delay of a window differ, as they should", "[excitation]") {
+TEST_CASE("a window of a delayed excitation and a delay of a windowed one differ", "[excitation]") {
     const Excitation M = made(Constant{1});
     CHECK(breaks_of(M.delayed(2).windowed(0, 1), -9, 9) == std::vector<double>{0, 1});
     CHECK(breaks_of(M.windowed(0, 1).delayed(2), -9, 9) == std::vector<double>{2, 3});

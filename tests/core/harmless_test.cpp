@@ -1,4 +1,4 @@
-// What a stranger has written cannot steer the terminal that shows it.
+// A stranger's text cannot control the terminal that shows it.
 #include "text/characters.hpp"
 
 #include "support/catch.hpp"

@@ -1,4 +1,4 @@
-// Runs by lot against an integrator that shares nothing with dinal: plain systems under native terms, functions of time
+// Random runs against an integrator that shares no code with dinal: plain systems under native terms, functions of time
 // and feedback, and systems with laws of friction, springs, walls, belts, bases, states, controllers and acts.
 #include "support/catch.hpp"
 #include "support/measure.hpp"

@@ -1,4 +1,4 @@
-// What is told between the rows, whatever rows are asked for, and after a thousand periods. That rk4 is of fourth order
+// The motion between the rows, whichever rows are requested, and after a thousand periods. That rk4 is of fourth order
 // is in the tolerances of conformance_test.cpp.
 #include <cmath>
 #include <functional>

@@ -1,4 +1,4 @@
-// Numbers that no user can give are refused, too; tests/lua/system_test.lua has the rest.
+// Numbers that cannot come from Lua are refused, too; tests/lua/system_test.lua has the rest.
 #include "model/oscillator.hpp"
 
 #include <limits>

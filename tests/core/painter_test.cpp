@@ -1,4 +1,4 @@
-// Pictures in files: what stands where, read from the dots of a PNG or from the text of an SVG.
+// Pictures in files: positions read from the dots of a PNG or from the text of an SVG.
 #include "plots/painter.hpp"
 
 #include <cairo.h>

@@ -1,4 +1,4 @@
-// Whether a motion repeats itself, told from events that were made up for it; and where the limits of that lie.
+// Whether a motion repeats itself, for made-up events, and the limits of that decision.
 #include "analysis/recurrence.hpp"
 
 #include <cmath>
@@ -73,7 +73,7 @@ TEST_CASE("a motion that changes by a tenth in a period is not periodic", "[recu
     CHECK_FALSE(recurrence(settling_turns(12, 0.5, 0.9)));
 }
 
-TEST_CASE("the trend of the last swings ignores differences below a part in a thousand million", "[recurrence]") {
+TEST_CASE("the trend of the last swings ignores relative differences below 1e-9", "[recurrence]") {
     const auto trend = [](double step) {
         return swings(half_cycles({1, 1 + step, 1 + 2 * step, 1 + 3 * step}), 1).trend;
     };

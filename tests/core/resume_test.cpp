@@ -1,4 +1,4 @@
-// A run that goes on from where it ended, against the same run without a stop.
+// A continued run against the same run without a stop.
 #include <cmath>
 
 #include "support/catch.hpp"

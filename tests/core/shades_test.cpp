@@ -1,4 +1,4 @@
-// Maps: which values have one shade.
+// Shades of maps: which values share one.
 #include "plots/shades.hpp"
 #include "support/catch.hpp"
 

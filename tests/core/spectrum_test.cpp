@@ -1,4 +1,4 @@
-// The spectrum against the sum that defines it, and against what a window leaves of a sine.
+// The spectrum against the sum that defines it, and the spectrum of a sine under each window.
 #include "analysis/spectrum.hpp"
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// excitation.samples with a cubic spline: against the polynomials and the derivatives that define it, the dense system
-// of all that is asked of its pieces, a sine, and motions under it by two integrators.
+// excitation.samples with a cubic spline: against the polynomials and derivatives that define it, the dense system of
+// its equations, a sine, and motions under it by two integrators.
 #include "model/terms/polyline.hpp"
 
 #include <Eigen/LU>

@@ -64,7 +64,8 @@ TEST_CASE("free motion with dry friction is exact, event by event and in between
         for (std::size_t j = 0; j < times.size(); ++j) {
             REQUIRE(std::fabs(theta[j] - static_cast<double>(y.at(times[j] - times[0]).theta)) <= 2e-14);
         }
-        const double start = initial.velocity == 0 ? 1 : 0;  // which is not an event
+        const double start =
+            initial.velocity == 0 ? 1 : 0;  // a start at rest counts as an extreme, but is not an event
         if (motion.time_to_rest() < end && !y.events().empty()) {
             ++rests;
             REQUIRE(motion.extremes() == static_cast<double>(y.events().size()) + start);
@@ -93,7 +94,8 @@ TEST_CASE("a motion of 2.5e12 cycles is computed as quickly and exactly as a sho
     const FreeMotion motion(nondimensional(0, gamma), {1, 0});
     CHECK(motion.time_to_rest() == Approx(0.25 / gamma).epsilon(1e-12));
     CHECK(std::fabs(*motion.rest_position()) <= gamma);
-    CHECK(motion.at(1e12).theta == Approx(1 - 0.4).epsilon(1e-3));  // an eighth of 1e-3 period is left of t's digits
+    CHECK(motion.at(1e12).theta ==
+          Approx(1 - 0.4).epsilon(1e-3));  // t = 1e12 has a resolution of an eighth of 1e-3 period
 }
 
 TEST_CASE("almost no damping takes as many half cycles as none", "[theory]") {

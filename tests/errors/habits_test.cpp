@@ -1,5 +1,4 @@
-// What somebody writes who is used to another language, and what is said about it: each row of the tables of
-// habits.cpp.
+// Habits of users of other languages, and the answers to them: each row of the tables of habits.cpp.
 
 #include <memory>
 #include <string>
@@ -39,7 +38,7 @@ void check(const Row& row) {
 
 }  // namespace
 
-TEST_CASE("a name of another language is answered by what does the same here", "[errors]") {
+TEST_CASE("a name from another language is answered with the function that does the same here", "[errors]") {
     for (const auto& [name, said] : std::initializer_list<Row>{{"disp", "'print'"},
                                                                {"True", "'true'"},
                                                                {"False", "'false'"},

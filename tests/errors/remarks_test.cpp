@@ -1,5 +1,5 @@
-// What is said about an error besides its sentence comes from its facts. The sentences here are no sentence of the
-// program: who looked for names in the words would find others, or none.
+// The remarks on an error come from its facts, not from the words of its sentence: the sentences here do not occur in
+// the program.
 #include "errors/error_remarks.hpp"
 
 #include <memory>
@@ -56,7 +56,7 @@ TEST_CASE("a name that does not exist is marked as it stands: alone or in quotes
           "lab:2: what is that\n   2 | local b = sys.ask(a)\n     |           ^^^");
 }
 
-TEST_CASE("a value is marked where it stands once; where it stands twice, it is the call", "[errors]") {
+TEST_CASE("a value that stands once in the line is marked; if it stands twice, the call is marked", "[errors]") {
     const Error error{.sentence = "not so", .call = "make", .culprit = "4"};
     CHECK(told(error, "local a = 1\nmake(1, 4)") == "lab:2: not so\n   2 | make(1, 4)\n     |         ^");
     CHECK(told(error, "local a = 1\nmake(4, 4)") == "lab:2: not so\n   2 | make(4, 4)\n     | ^^^^");
@@ -71,7 +71,7 @@ TEST_CASE("the global that is nil is found for the option that is missing, and f
     CHECK(told(error, "tEnd = 3\nmake{ M = nothing }") == "lab:2: say when\n   2 | make{ M = nothing }\n     | ^^^^");
 }
 
-TEST_CASE("an argument that is nil gets the name of the global that is", "[errors]") {
+TEST_CASE("a nil argument is reported with the name of the undefined global passed for it", "[errors]") {
     CHECK(
         told({.sentence = "a number, please", .call = "sys:ask(t)", .culprit = "nil"}, "local a = 1\nsys:ask(when)") ==
         "lab:2: a number, please; 'when' is nil\n   2 | sys:ask(when)\n     |         ^^^^");
@@ -79,14 +79,15 @@ TEST_CASE("an argument that is nil gets the name of the global that is", "[error
           "lab:2: a number, please\n   2 | sys:ask(when)\n     | ^^^");
 }
 
-TEST_CASE("habits are seen in the facts, too: a decimal comma, a file without quotes", "[errors]") {
+TEST_CASE("habits of other languages are recognised in the facts of an error: a decimal comma, a file without quotes",
+          "[errors]") {
     CHECK_THAT(told({.sentence = "names, please", .call = "make", .culprit = "5"}, "local a = 1\nmake{ k = 0,5 }"),
                Catch::Contains("names, please; a decimal point is a point: 0.5\n"));
     CHECK_THAT(told({.sentence = "no such thing", .culprit = "csv"}, "run = {}\nmake(run.csv)"),
                Catch::Contains("no such thing; write the name of a file in quotes: \"run.csv\"\n"));
 }
 
-TEST_CASE("what would cure it ends the sentence, and nothing else is looked for", "[errors]") {
+TEST_CASE("a cure given with an error ends its sentence, and no other remark is added", "[errors]") {
     const Error error{.sentence = "no", .call = "make", .culprit = "nil", .cure = "; did you mean 'x'?"};
     CHECK(told(error, "local a = 1\nmake(when)") == "lab:2: no; did you mean 'x'?\n   2 | make(when)\n     | ^^^^");
 }
@@ -119,7 +120,7 @@ TEST_CASE("the facts go with the error when it is raised again", "[errors]") {
           "lab:4: lab:2: not so\n   4 | " + wrapped + "\n     | " + std::string(wrapped.find('I'), ' ') + "^");
 }
 
-TEST_CASE("an error after which many others were raised is still told", "[errors]") {
+TEST_CASE("an error is still reported with its remarks after many others were raised", "[errors]") {
     const Error error{.sentence = "not so", .option = "I"};
     const std::string kept = "local _, first = pcall(make, { I = 1 }) ";
     const std::string others = "for i = 1, 1000 do pcall(nondimensional, { zeta = -i }) end ";

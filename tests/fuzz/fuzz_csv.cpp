@@ -1,4 +1,4 @@
-// The reader of comma separated values. What it takes as a table must be finite numbers.
+// The reader of comma separated values: a table that it accepts has finite numbers only.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -17,7 +17,7 @@
 namespace {
 
 constexpr std::size_t memory = std::size_t{32} << 20U;
-constexpr int milliseconds = 100;  // of this process: the machine may be busy
+constexpr int milliseconds = 100;  // processor time of this process, as the machine may be busy
 
 extern "C" void on_time(int) {
     dinal::lua::request_stop(dinal::lua::Stop::time);

@@ -1,4 +1,4 @@
-// Runs a fuzz target on the cases of a folder, without a fuzzer: what was found once must not come back.
+// Runs a fuzz target on the cases of a folder, without a fuzzer: regression tests of earlier finds.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

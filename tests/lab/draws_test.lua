@@ -1,5 +1,5 @@
--- Whatever a student number draws: each sheet can be worked out, its answers are right, no known mistake is, and each is told.
--- `dinal tests/lab/draws_test.lua all` tries all combinations, for minutes; without that word some, evenly, of the large sets.
+-- For every student number each sheet can be worked out: its answers are right, and each known mistake is recognised.
+-- `dinal tests/lab/draws_test.lua all` tries all combinations, for minutes; without that word a part of large sets.
 package.path = "tests/lua/?.lua;" .. package.path
 local support = require "support"
 
@@ -106,7 +106,7 @@ for _, set in ipairs(sets) do
   end)
 end
 
-support.test("what two mistakes may have made is told of both, the nearer one first", function()
+support.test("a value that two mistakes explain is reported with both, the nearer one first", function()
   local question = { sheet = {}, answer = 1, tolerance = 0.01, mistakes = { { 2.02, "the farther" }, { 2, "the nearer" } } }
   support.equal(select(2, course.verdict(question, 2.001)), "the nearer. Or: the farther")
 end)

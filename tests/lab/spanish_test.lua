@@ -61,7 +61,7 @@ for _, english in pairs(pages) do
   end
 end
 
-support.test("what is said follows the language of the number, and that of the sheet", function()
+support.test("the program speaks the language of the sheet, or the one that is set for all sheets", function()
   local pipe <close> = io.popen "cat src/lab/judge.lua sheets/[1-9]*.lua"
   local judge = setmetatable({}, { __index = _G })
   assert(load(pipe:read "a", "=course", "t", judge))()

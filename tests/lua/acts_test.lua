@@ -1,5 +1,4 @@
--- What a user does at his events, and what comes at the same instant as something else: where things end that rounding
--- must not decide.
+-- Acts of user events, events at the same instant, and ends of motions that must not be decided by rounding.
 dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0 }

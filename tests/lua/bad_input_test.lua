@@ -67,7 +67,7 @@ test("getmetatable of an object returns a name, so that nobody breaks it by acci
     assert(not pcall(setmetatable, system { I = 1, k = 1 }, {}))
 end)
 
-test("a list of numbers has none that is not finite", function()
+test("a list with a number that is not finite is refused", function()
     local sys = system { I = 1, k = 1 }
     local run = sys:simulate { theta0 = 1, t_end = 1 }
     for word, number in pairs { inf = math.huge, nan = 0 / 0 } do
@@ -86,7 +86,7 @@ test("errors of a call through pcall and in a tail call still name a line", func
     has(message, "system: I = 0")
 end)
 
-test("what is no wrong option is refused in the words of its call", function()
+test("arguments that are wrong in other ways than by an option are refused in the words of their call", function()
     local record = { t = vector.range(0, 9), theta = vector.range(0, 9):abs() }
     local guess = system { I = 1, k = 1, Rd = 0.1 }
     local function fit(options) return function() identify(merged({ data = record, system = guess, free = { "k" } }, options)) end end

@@ -349,7 +349,7 @@ test("a body or link may be called like a field of one body, but not like a meth
     }
 end)
 
-test("a body that M cannot move again is at rest, also with a name, and with a state that nothing asks", function()
+test("a body that M cannot move again is at rest, also with a name, and with a state that nothing uses", function()
     local M = excitation.harmonic { amplitude = 0.5, omega = 1 }
     local own = { I = 1, k = 1, friction = friction.stribeck { Rd = 1, Re = 1.6, speed = 0.5 } }
     local alone = system(own):simulate { M = M, theta0 = 0.5, t_end = 10 }

@@ -1,4 +1,4 @@
--- What a user's M may do: whatever it is, the outcome is clear and the session goes on.
+-- Whatever a user's M does, the outcome is clear and the session goes on.
 dofile "tests/lua/support.lua"
 
 local nd = nondimensional { zeta = 0.1, friction_ratio = 0.1 }

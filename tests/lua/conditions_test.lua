@@ -179,7 +179,7 @@ test("a function that truncates its digits is noise, not a condition", function(
     says(run, "which are sampled")
 end)
 
-test("what rounds or folds the motion jumps where math.floor of it does", function()
+test("functions that round or fold the motion jump where math.floor of it does", function()
     local function run(M) return system { I = 1, k = 1 }:simulate { M = M, theta0 = 2.5, t_end = 20, dt = 0.1 }.theta end
     for folded, by_floor in pairs {
         [function(_, q) return math.ceil(q) / 2 end] = function(_, q) return -math.floor(-q) / 2 end,

@@ -1,4 +1,4 @@
--- Controllers that hold what they give: between their instants and switches the motion is a damped oscillation about a place.
+-- Controllers with a held output: between their instants and switches the motion is a damped oscillation about a place.
 dofile "tests/lua/support.lua"
 
 test("between the instants of a sampled controller exact and spectral agree, at every damping", function()

@@ -1,4 +1,4 @@
--- sys:steady of runs with more in them, and of limit cycles, whose period is found. Run by dinal.
+-- sys:steady of runs with states, belts and acts, and of limit cycles, whose period is found. Run by dinal.
 dofile "tests/lua/support.lua"
 
 local function extent(theta) return (theta:max() - theta:min()) / 2 end

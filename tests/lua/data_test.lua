@@ -1,4 +1,4 @@
--- Named columns: made, read, picked, sorted, saved and loaded as a user would. Run by dinal.
+-- Tables with named columns: creation, reading, selection, sorting, saving and loading. Run by dinal.
 dofile "tests/lua/support.lua"
 
 local read = load

@@ -1,4 +1,4 @@
--- Smooth motions that die out until nothing but rounding is left of them: that is no noise, no jump and no error.
+-- Smooth motions that die out until only rounding remains, which is neither noise nor a jump nor an error.
 dofile "tests/lua/support.lua"
 
 -- Numbers between 0 and 1 that are the same every time.
@@ -132,7 +132,7 @@ test("steady finds the rest to which a smooth motion dies out, whatever other st
     end
 end)
 
-test("a motion that is tiny from the start beside the numbers of functions that are not read follows the linear one", function()
+test("a motion that is tiny against the numbers of its unread functions from the start follows the linear one", function()
     for i = 1, 40 do
         local k, c, size = between(0.3, 3), between(0.2, 2), between(1e-13, 1e-9)
         local spring, drag = one_of(shapes), one_of(shapes)

@@ -1,4 +1,4 @@
--- The museum piece: what the listing of 1989 computes, what chapter 6 of the report was computed with, and its stop rule.
+-- integrator.dinal1989 against a transcription of the listing of 1989 and the numbers of chapter 6 of the report.
 dofile "tests/lua/support.lua"
 
 local pi = math.pi
@@ -56,7 +56,7 @@ test("dinal1989 agrees with a plain transcription of the listing over hundreds o
                     same(run.friction[i], -p.gamma * sg(V), 0, "friction", i)
                     U, V = next_one()
                 end
-                -- An event is told at the end of the step in which the velocity has changed its sign.
+                -- An event is recorded at the end of the step in which the velocity has changed its sign.
                 for _, event in ipairs(run.events) do
                     local i = math.floor(event.t / p.h + 0.5) + 1
                     equal(event.theta, run.theta[i])

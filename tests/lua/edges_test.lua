@@ -1,4 +1,4 @@
--- Edges of runs with more in them: what happens at one instant, just at a limit, or closer together than can be told.
+-- Several events at one instant, exactly at a limit, or closer together than the time resolves.
 dofile "tests/lua/support.lua"
 
 local both_engines = { integrator.spectral {}, integrator.rk4 { h = 1e-3 } }
@@ -107,7 +107,7 @@ test("a state that does not exist is neither read nor written", function()
     end, "there is no state 'nn'; there is n; did you mean 'n'?")
 end)
 
-test("an exponential that outgrows the motion is followed at once", function()
+test("an exponential that outgrows the motion costs few stretches", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.3 }
     local M = excitation.exponential { tau = -0.02, amplitude = 1e-3 }
     -- All but the forced part is e^-100 of it; friction and the rounding of t in the exponent: 100 eps.
@@ -140,7 +140,7 @@ test("a step of M at the end of a step of rk4 acts from there on", function()
     near(sys:simulate(merged(options, { integrator = integrator.rk4 { h = 0.01 } })).theta, exact.theta, 1e-7)
 end)
 
-test("what happens right at the end of a run is told by it, by every integrator, and not again by the run that goes on", function()
+test("an event right at the end of a run is reported once, by every integrator, and not again by the continued run", function()
     local function kinds(run, from)
         local told = {}
         for _, event in ipairs(run.events) do
@@ -179,7 +179,7 @@ test("what happens right at the end of a run is told by it, by every integrator,
     go(flat, { velocity0 = 1, t_end = 2, events = { { when = function(_, _, v) return v end } } }, general, "rest")
 end)
 
-test("at the end of a run the last row shows what follows a jump of M there, and nothing is said of the time behind it", function()
+test("the last row shows the contacts after a jump of M at t_end, and nothing is reported of later times", function()
     local own, jump = { I = 1, k = 1, Rd = 0.3, Re = 0.5 }, function(t) return t < 2 and 0 or 5 end
     local one, several = system(own), system { bodies = { a = own, b = { I = 2 } }, links = { l = { "a", "b", Rd = 1 } } }
     for _, method in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
@@ -200,7 +200,7 @@ test("at the end of a run the last row shows what follows a jump of M there, and
     has_not(one:simulate { M = jump, t_end = 1.5 }:explain(), "constant", "stays at rest")
 end)
 
-test("a run that ends within roundings of a release does not tell that the contact stopped again", function()
+test("a run that ends within rounding of a release does not report that the contact stopped again", function()
     local rig = system { bodies = { a = { I = 1 }, b = { I = 1, k = 0.4, Rd = 0.1, Re = 0.2 } }, links = { l = { "a", "b", Rd = 0.2, Re = 0.4 } } }
     local M = { a = excitation.harmonic { amplitude = 0.8, omega = 0.8 } }
     local events, tried = rig:simulate { M = M, t_end = 20 }.events, 0

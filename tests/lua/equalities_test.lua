@@ -1,5 +1,5 @@
--- One number seen from two sides: a part and its whole, a run that goes on and the whole run, a worker and the call
--- itself, and one record read in two ways.
+-- One number computed in two ways: a part and its whole, a continued and a whole run, a worker and a direct call, and
+-- one record read in two ways.
 dofile "tests/lua/support.lua"
 
 -- All systems here are of size 1. A motion in two parts differs from the whole by the rounding of the panels between.
@@ -110,7 +110,7 @@ test("the friction of a link is at most its limit, also where its own load jumps
     near(run.link.friction:abs():max(), 0.1, tolerance)
 end)
 
-test("a mass is not told to rest for good when cubic samples exceed Re between two of them", function()
+test("a mass is not at rest for good when a spline exceeds Re between two samples", function()
     local hump = excitation.samples { t = { 0, 1, 2, 3 }, M = { 0, 1, 1, 0 }, interpolation = "cubic", period = 3 }
     local peak = hump(1.5)
     assert(peak > 1.1, peak)

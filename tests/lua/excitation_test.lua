@@ -1,4 +1,4 @@
--- Excitations: terms, operators, user functions and what is said about mistakes. The examples of the manual, which
+-- Excitations: terms, operators, user functions and messages about mistakes. The examples of the manual, which
 -- help_test.lua runs, have the plain values.
 
 dofile "tests/lua/support.lua"
@@ -120,7 +120,7 @@ raises(function() return both:values{ 0, 1, 2, 3, 4 } end, "late")
 assert(calls == 3)
 assert(both(1) == 2, "and the next call starts afresh")
 
--- It may ask another excitation, itself (to a depth), fail in there and catch that, and replace itself.
+-- A function may call another excitation, or itself up to a depth, catch an error in there, and replace itself.
 local inner = e.scripted(function(t) if t > 5 then error("too late", 0) end return t end)
 local outer = e.scripted(function(t)
     local good, value = pcall(inner, t)

@@ -18,7 +18,7 @@ test("a run read from a file, one of 1989 and a failed one have a story, too", f
     says(dinal.partial, "The run stopped early, at t = 3: M failed")
 end)
 
-test("a load that grows exceeds Re, and one that jumps beyond it jumps, however little beyond", function()
+test("the story says whether a load grew beyond Re or jumped beyond it, down to the rounding of the torques", function()
     local block = system { I = 1, k = 0, Rd = 0.5, Re = 1 }
     for by, words in pairs { [1e-7] = "M jumped so that |M - k theta| = 1.0000001 > Re = 1", [1e-11] = "this torque exceeded Re" } do
         says(block:simulate { M = excitation.step { amplitude = 1 + by, at = 1 }, t_end = 2 }, words)
@@ -66,7 +66,7 @@ test("the story says once whether M was read, and which line was the reason wher
         "The belt is read", "The base is evaluated in Lua")
 end)
 
-test("an M that is rough on every scale is reported once, in the outcome, the summary and the story", function()
+test("an M that is rough on every scale is reported once each in the outcome, the summary and the story", function()
     local function single(x) return (string.unpack("f", string.pack("f", x))) end
     local run = nondimensional { zeta = 0.1 }:simulate { M = function(t) return single(math.sin(5 * t)) end, t_end = 10, dt = 1 }
     assert(run.outcome:find("^reached the end, within the noise of the torques, %d"), run.outcome)
@@ -309,7 +309,7 @@ test("a mass that a feedback holds at its jump stands from beginning to end", fu
     says(run, "It stayed there", "velocity = 0.")
 end)
 
-test("the story of a machine says of no body that it moved while its clutch was open, nor of a brake that the run is too short", function()
+test("the story does not say that a body behind an open clutch moved, nor that a run with a brake is too short", function()
     local later = function(t) return t >= 0.4 and 1 or 0 end
     local run = system { bodies = { a = { I = 1 }, b = { I = 1 } }, links = { clutch = { "a", "b", Rd = 1, normal = later } } }
         :simulate { velocity0 = { a = 1 }, t_end = 1.5 }

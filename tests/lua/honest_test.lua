@@ -1,4 +1,4 @@
--- M must depend on its arguments only: what breaks this is found out.
+-- M must depend on its arguments only: violations of this are detected.
 dofile "tests/lua/support.lua"
 
 local asked = dofile "tests/lua/asked.lua"

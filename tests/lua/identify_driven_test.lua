@@ -1,4 +1,4 @@
--- identify: driven records whose mass stands, at first or on its way, or that are cut off; searches that flew away.
+-- identify: driven records whose mass is stuck for a while or that are cut off, and searches that diverged.
 dofile "tests/lua/support.lua"
 
 local decay = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }:simulate{ theta0 = 1, t_end = 8, dt = 0.02 }
@@ -116,7 +116,7 @@ test("a driven record that is cut off is fitted, too, and one that ends at rest 
     has_not(exact, "clipped")
 end)
 
-test("a fit has no swings that no sample shows", function()
+test("a fit does not choose a motion whose swings lie between the samples", function()
     local s = system{ I = 0.4, k = 4.74, C = 0.135, Rd = 0.242, Re = 0.261 }
     local run = s:simulate{ theta0 = 0.709, t_end = 15.4, dt = 0.02 }
     for seed = 1, 8 do  -- every third one ended overdamped, with I of 1e-6

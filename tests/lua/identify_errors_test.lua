@@ -1,5 +1,5 @@
--- identify: how often the truth lies within the errors where the record is not what the model says: a law of friction that
--- falls with the speed, a zero that drifts, an instrument with steps; and that a record as the model says is left in peace.
+-- identify: how often the truth lies within the errors if the record deviates from the model (friction that falls with
+-- the speed, a drifting zero, an instrument with steps), and that a record of the model itself gets no remarks.
 dofile "tests/lua/support.lua"
 
 local function between(a, b) return a + (b - a) * math.random() end

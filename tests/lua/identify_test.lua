@@ -1,4 +1,4 @@
--- identify: free decays without a guess, driven records, errors that are true, and records that cannot be one.
+-- identify: free decays without a guess, driven records, the size of errors, and invalid records.
 dofile "tests/lua/support.lua"
 
 local sys = system{ I = 1, k = 40, C = 0.3, Rd = 0.8 }
@@ -134,7 +134,7 @@ local short_decays = {
     { "creeps", { I = 1, k = 40, C = 20, Rd = 2 }, dt = 1/30, std = 0.01, silent = "Rd_over_k Re theta0 offset" },
 }
 
-test("a decay of one or two swings has the errors of the flat valley, and names what it leaves undetermined", function()
+test("a decay of one or two swings has errors as wide as its valley, and names the values it does not determine", function()
     local judged, part, ratio = judge()
     for _, short in ipairs(short_decays) do
         local s = system(short[2])

@@ -1,7 +1,7 @@
--- What jumps while a run goes on: a belt that is a function, a velocity at a wall, and what stands at the instant of it.
+-- Jumps during a run: of a belt that is a function, and of the velocity at a wall; and rows at the instant of a jump.
 dofile "tests/lua/support.lua"
 
--- A jump that nobody announced is found to 1e-13 of a run of some time units.
+-- An unannounced jump is located to 1e-13 of a run of some time units.
 local found = 1e-11
 
 test("a belt with kinks where it is zero is followed quickly", function()

@@ -1,4 +1,4 @@
--- lab and check: whose lab it is, what is refused, and that no answer is to be had but by working.
+-- lab and check: student numbers, refused input, and that the answers cannot be read instead of worked out.
 dofile "tests/lua/support.lua"
 
 test("before a number is given, the lab gives and judges nothing", function()

@@ -38,7 +38,7 @@ test("a freewheel behind a body that stops dead at a wall holds the whole train,
     near(run:energy().total.impacts, 0.2 * 0.66 ^ 2 + 0.8 * 4, 1e-13)
 end)
 
-test("a belt or a moved body takes along what a freewheel keeps from falling behind, from the start", function()
+test("from the start a belt or a moved body carries bodies along that a freewheel keeps from falling behind", function()
     local block = system { I = 1, k = 0, friction = wheel(0.2) }
     local function ends_at(theta, velocity, options)
         expect(block, merged({ t_start = 2, t_end = 3, dt = 1 }, options), { theta = theta, velocity = velocity })

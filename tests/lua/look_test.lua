@@ -1,5 +1,5 @@
--- What spectral sees of a function between its nodes, what it makes of one that is rough on every scale, and narrow bumps
--- that nobody may step over without a word.
+-- Details of a function between the nodes of spectral, functions that are rough on every scale, and narrow bumps, which
+-- no integrator may miss silently.
 dofile "tests/lua/support.lua"
 
 local length, pi = 10, math.pi -- of runs, natural periods
@@ -95,7 +95,7 @@ test("evenly spaced unannounced jumps are predicted: at most 40 values of M for 
     end
 end)
 
-test("an M that fails after the end of the run is not searched there for its next jump", function()
+test("M is not searched for jumps after the end of the run, where it may fail", function()
     local last = 0
     look(oscillator(0.05, 0.05), function(t)
         last = math.max(last, t)

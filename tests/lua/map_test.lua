@@ -1,4 +1,4 @@
--- Maps of columns and diagrams of bifurcation: what is drawn, and what is refused.
+-- Maps of columns and bifurcation diagrams: pictures, and refused input.
 dofile "tests/lua/support.lua"
 
 local map = sweep { over = { x = vector.linspace(0, 1, 11), y = vector.linspace(0, 2, 9) }, run = function(p)

@@ -1,4 +1,4 @@
--- minimise{ over, run }: places that are known, and what is refused. Run by dinal.
+-- minimise{ over, run }: minima that are known, and refused input. Run by dinal.
 dofile "tests/lua/support.lua"
 
 test("the least value over one parameter is found, inside and at the ends", function()

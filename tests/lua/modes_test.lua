@@ -1,4 +1,4 @@
--- Eigenvalues beside a rest or an even sliding.
+-- Eigenvalues of the motion near a rest or a steady sliding.
 dofile "tests/lua/support.lua"
 
 test("a mass on a spring has its well-known pair of modes", function()

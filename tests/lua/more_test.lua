@@ -1,4 +1,4 @@
--- Runs with more in them: states, events, belt, base, controllers with a memory.
+-- Runs with states, events, belts, bases and controllers with a memory.
 dofile "tests/lua/support.lua"
 
 local block = system { I = 1, k = 0, Rd = 0.3, Re = 0.5 }

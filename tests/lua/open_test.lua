@@ -1,4 +1,4 @@
--- Contacts that open, where nothing presses on them or their limits are 0, and close again.
+-- Contacts that open when nothing presses on them or their limits are 0, and close again.
 dofile "tests/lua/support.lua"
 
 local both = { function(f) return f end, unread }

@@ -1,5 +1,5 @@
--- Every option of every call: a wrong name, a wrong kind and a number out of its range are each told by a sentence that
--- names the call, the option and the value. The calls and their options are those of the manual, which lists the rows.
+-- Every option of every call: a wrong name, a wrong kind and a number out of its range are each refused with a sentence
+-- that names the call, the option and the value. The calls and their options are those of the manual.
 dofile "tests/lua/support.lua"
 
 local calls = {} -- heading -> list of { name, meaning }

@@ -1,5 +1,5 @@
 -- The same problem in other units of time, angle and torque, each a power of two greater or smaller, is the same motion to
--- the last bit: such factors change no digit of any number, so what differs hangs on a size that is nobody's business.
+-- the last bit. A difference shows that a result depends on an absolute size.
 dofile "tests/lua/support.lua"
 
 -- Each gives the options of a system and of a run; u has the units: t, angle, torque, k, and speed = angle/t.

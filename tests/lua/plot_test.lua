@@ -1,4 +1,4 @@
--- plot, run:plot, run:phase_plot: what they draw, what they return, and what they say to wrong input.
+-- plot, run:plot, run:phase_plot: pictures, results, and messages about wrong input.
 dofile "tests/lua/support.lua"
 
 local nd = nondimensional { friction_ratio = 0.1, breakaway_ratio = 0.12, units = { theta = "rad" } }
@@ -32,7 +32,7 @@ test("the plot of a driven run shows theta and M/k, of a free one only theta, an
     has_not(picture(nondimensional {}:simulate { theta0 = 1, t_end = 1, dt = 0.1 }), "stuck")
 end)
 
-test("what is a straight line between coarse rows is drawn as one, and what no row shows as it is", function()
+test("a straight motion between coarse rows is drawn as a line, and a motion between rows as it is", function()
     local function ramped(dt) return system { I = 1, k = 1, Rd = 9 }:simulate { M = excitation.ramp {}, t_end = 4, dt = dt } end
     equal(picture(ramped(4), { y = "friction" }), picture(ramped(0.01), { y = "friction" }))
     -- The phase plane is the same for motions that are alike in another time.
@@ -201,7 +201,7 @@ test("a run without rows and dense output says what to do", function()
     refused { { "none:plot()", "run:plot: the run has no rows to draw", "dt" } }
 end)
 
-test("the window of an x that is not t is no window of t", function()
+test("a window of an x other than t does not limit the time", function()
     local swing = nondimensional { zeta = 0.02 }:simulate { theta0 = 1, t_end = 3, dt = 0.01 }
     has(picture(swing, { x = "theta", y = "velocity", xlim = { -0.5, 0.4 } }), " 5 +", "-5 +")
 end)

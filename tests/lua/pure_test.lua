@@ -1,4 +1,4 @@
--- What is a function of its arguments is never accused of a memory, whatever else it does; and what that costs.
+-- A function of its arguments alone is never reported as having a memory, whatever else it does.
 dofile "tests/lua/support.lua"
 
 local asked = dofile "tests/lua/asked.lua"

@@ -1,4 +1,4 @@
--- What people ask help(), and a piece of the page that answers first.
+-- Questions that people ask help(), and a part of the page that must come first.
 dofile "tests/lua/support.lua"
 
 local questions = {

@@ -1,5 +1,5 @@
--- Cases that lie exactly on an edge: the limit of sticking, a load that passes it by next to nothing, a break at an
--- event, the beginning and the end; and masses that only creep, or that nothing may ever move again.
+-- Cases exactly on an edge: the limit of sticking, a load that barely passes it, a break at an event, the start and the
+-- end; and masses that only creep, or that nothing can move again.
 dofile "tests/lua/support.lua"
 
 local pi, sin = math.pi, math.sin
@@ -14,7 +14,7 @@ local function each(body, h, of_rk4)
     end
 end
 
---- A mass of `own` that stands at theta0 is never moved by M.
+--- Checks that M never moves the mass of the system `own`, which starts at rest at theta0.
 local function held(own, M, theta0, from, t_end, by, what)
     return expect(own, { M = M, theta0 = theta0, t_start = from, t_end = t_end, dt = (t_end - from) / 64, integrator = by },
         { events = 0, theta = function() return theta0 end, velocity = still, within = 0 }, what)

@@ -313,7 +313,7 @@ test("an excitation at a time that depends on the motion, with more arguments or
         "it evaluates an excitation at a time that depends on the motion")
 end)
 
-test("proof states what is known between the samples, or why nothing is", function()
+test("run.proof states what is known between the samples, or why nothing is known", function()
     local function proof(M) return (M + excitation.step {}):proof() end
     equal(excitation.step {}:proof(), "native terms")
     equal(proof(math.pi * excitation.scripted(function(t) return math.sin(t) * t end)), "read: bounded on every stretch")

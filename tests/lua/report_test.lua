@@ -1,4 +1,4 @@
--- report{}: what goes in comes out in HTML and in Markdown, nothing in it is taken for markup, and what is wrong is told.
+-- report{}: all items appear in HTML and in Markdown, no text is taken for markup, and wrong items are refused.
 dofile "tests/lua/support.lua"
 
 

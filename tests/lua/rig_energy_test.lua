@@ -29,7 +29,7 @@ test("the rows of the table of several bodies show the numbers of each", functio
     equal(rows, 4)
 end)
 
-test("a locked pair on a belt gets all its energy from it, and friction that varies is told as such", function()
+test("a locked pair gets all its energy from its belt, and varying friction is named as such", function()
     local e = expect(pair({ I = 1, k = 1, Rd = 5 }, { I = 1 }, { Rd = 5 }), { belt = { a = 0.3 }, velocity0 = { a = 0.3, b = 0.3 }, t_end = 3 }):energy()
     equal(e.total.dry, 0.0)
     near(e.a.belt, 0.9 ^ 2 / 2, 1e-12)
@@ -38,7 +38,7 @@ test("a locked pair on a belt gets all its energy from it, and friction that var
     has_not(varying:explain(), "because", "M is constant")
 end)
 
-test("the energy of several bodies is that of the run itself: it asks no function", function()
+test("the energy of several bodies is computed during the run: no function is called for it", function()
     local calls = 0
     local function M(t) calls = calls + 1 return math.sin(1.3 * t) + 0 * #tostring(t) end
     local rig = pair({ I = 1, k = 2, Rd = 0.2 }, { I = 2, k = 1, walls = { upper = 0.4, restitution = 0.6 } }, { k = 3, C = 0.1, Rd = 0.1 })

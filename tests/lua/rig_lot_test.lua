@@ -1,4 +1,4 @@
--- Random rigs with everything that may act in them, and what single decisions of them once got wrong.
+-- Random systems of several bodies with everything that can act on them, and regression tests of single decisions.
 dofile "tests/lua/support.lua"
 
 local function uniform(a, b) return a + (b - a) * math.random() end

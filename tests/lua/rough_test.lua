@@ -1,4 +1,4 @@
--- Functions with noise in them, in runs with more in them: what ends such a run says what is rough, and what goes on.
+-- Functions with noise in runs with states, belts and several bodies: the message names the rough function.
 dofile "tests/lua/support.lua"
 
 -- A number within 1 that depends on t alone, and not smoothly anywhere.
@@ -67,7 +67,7 @@ test("noise in M is followed as accurately as possible, also with two bodies", f
     end
 end)
 
-test("what is found in a steep pulse is not noise of the motion behind it", function()
+test("noise found in a steep pulse does not count for the motion after it", function()
     local c, w, A = 10.968540029560247, 5.0162678889507557e-07, 2847704.8565944256
     local function load(_, theta) return -0.1 * theta^3 end
     local sys = system { I = 1, k = 2, C = 0.2 }

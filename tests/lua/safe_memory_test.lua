@@ -37,7 +37,7 @@ strangers.check({
     ["memory while the chunk is stopped"] = "local t = {} local x <close> = setmetatable({}, { __close = function() while true do t[#t + 1] = {} end end }) while true do t[#t + 1] = {} end",
 }, options, 1, "dinal: stopped[^\n]*: " .. limit)
 
--- Garbage is no use: what is thrown away may be taken again.
+-- Memory that a script no longer uses is available again.
 strangers.check({
     ["vectors that are thrown away"] = "local v = vector.linspace(0, 1, 5e5) for i = 1, 100 do v = v + 1 end print 'done'",
     ["runs that are thrown away"] = "for i = 1, 100 do nondimensional{}:simulate{ theta0 = 1, t_end = 10, dt = 1e-3 } end print 'done'",

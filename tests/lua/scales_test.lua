@@ -1,5 +1,5 @@
--- Far from the system's own period: very overdamped motions, springs that are nearly absent, long records, feedback that
--- is stiff or grows; and what exact promises beside its motions.
+-- Motions far from the natural period: very overdamped, almost without a spring, along long records, with stiff or
+-- growing feedback; and which systems exact accepts.
 dofile "tests/lua/support.lua"
 
 local exact, spectral = integrator.exact {}, integrator.spectral {}
@@ -148,7 +148,7 @@ end)
 
 -- ---- exact
 
-test("exact names what it does not accept, and the default is decided by the same question", function()
+test("exact names what it does not accept, and the default integrator follows the same rule", function()
     local sys = nondimensional { zeta = 0.1, friction_ratio = 0.2 }
     local duffing, slides = system { I = 1, k = 1, spring = spring.polynomial { [3] = 0.5 } }, system { I = 1, k = 0, Rd = 0.1 }
     local of_M = "integrator.exact{} supports only native terms other than chirp and gaussian: use integrator.spectral{}, which supports every M"

@@ -1,5 +1,5 @@
 -- One function writes a variable that another one reads. Functions are called out of order, ahead of time and again, so
--- the run is as if they were called in order of time, or says that one depends on more than its arguments.
+-- the run is as if they were called in order of time, or reports that one depends on more than its arguments.
 dofile "tests/lua/support.lua"
 
 local change = 5.3
@@ -48,7 +48,7 @@ local places = {
         local function seen(t, theta) return of(t) * theta.a end
         o.M.a = o.M.a + excitation.relay { on = -0.1, off = 0.1, amplitude = 0.5, of = seen }
     end,
-    -- These two are called once, in order.
+    -- These two are called only once for each time, in order.
     sampled = function(o, of)
         o.M.a = o.M.a + excitation.sampled(function(t, theta) return of(t) * (1 + theta.a) end, { every = 0.1 })
     end,

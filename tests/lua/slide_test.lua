@@ -1,5 +1,5 @@
--- Loads that jump on a surface to which both sides drive the motion back: it slides along the surface, with the mixture of
--- both sides that keeps it there (Filippov).
+-- Loads that jump on a surface and drive the motion back from both sides: the motion slides along the surface, with the
+-- mixture of both sides that keeps it there (Filippov).
 dofile "tests/lua/support.lua"
 
 local function sgn(x) return x > 0 and 1 or x < 0 and -1 or 0 end
@@ -257,7 +257,7 @@ test("a body that a load drives back to a place comes to rest right there", func
     end
 end)
 
-test("a spring and other loads do not keep it from there, and it leaves where they overcome both", function()
+test("a body comes to rest at such a place also under a spring and other loads, and leaves when they overcome load and friction", function()
     local D, Re, a = 1.2, 0.5, 0.6
     local own, g = { I = 1, k = 0.5, C = 0.1, Rd = 0.4, Re = Re }, passes(D, a)
     local function f(t) return 0.3 * math.sin(t) + (t > 20 and 0.5 * (t - 20) or 0) end
@@ -272,7 +272,7 @@ test("a spring and other loads do not keep it from there, and it leaves where th
     near(run:at(24.5), free:at(24.5), 1e-9)
 end)
 
-test("a body that stands on such a place from the start stays, and leaves where it is pushed beyond both", function()
+test("a body that starts at rest on such a place stays until it is pushed harder than load and friction together", function()
     for _, at_0 in ipairs { -1, 0, 1 } do -- it is pushed on by 1.5 - 1 - 0.3
         local M = function(t, theta) return (theta > 0.5 and -1 or theta < 0.5 and 1 or at_0) + (t > 3 and 1.5 or 0.2) end
         expect({ I = 1, k = 0, Rd = 0.3 }, { M = M, theta0 = 0.5, t_end = 4 }, { stick = 0, slip = { 3 }, theta = 0.6 })
@@ -282,7 +282,7 @@ test("a body that stands on such a place from the start stays, and leaves where 
     expect({ I = 1, k = 0, Rd = 0.435 }, { M = M, theta0 = -0.758, t_end = 4 }, { theta = -0.758 + (2.1 - 0.534 - 0.951 - 0.435) / 2 })
 end)
 
--- Without dry friction that could hold the body it passes a ever faster, and stays there.
+-- Without dry friction the body crosses the place at ever shorter intervals, and stays there.
 test("a load holds a body at the place to which it drives it back, beside damping alone or on a belt", function()
     local run = expect({ I = 1, k = 0.5, C = 2 }, { M = passes(1, 0.2), theta0 = 1, t_end = 30 }, { status = "end", theta = 0.2, most = 30000, parts = false })
     near(run.M[#run], 0.1, 1e-9)
@@ -294,7 +294,7 @@ test("a load holds a body at the place to which it drives it back, beside dampin
     near(left[#left].t, leaves, 1e-9)
 end)
 
-test("the place may move, and may be one of a link", function()
+test("the place to which a load drives a body back may move, and may be an angle of a link", function()
     expect({ I = 1, k = 1, C = 0.4 }, { M = function(t, theta) return theta > 0.3 * math.sin(t) and -2 or 2 end, velocity0 = 0.3, t_end = 12 },
         { theta = function(t) return 0.3 * math.sin(t) end, within = 1e-9, parts = false })
     local one = system { I = 3, k = 1, C = 0.2 }:simulate { theta0 = 0.4, t_end = 10 }
@@ -303,12 +303,12 @@ test("the place may move, and may be one of a link", function()
         { ["a.theta"] = one.theta, ["b.theta"] = one.theta - 0.4, within = 1e-10, parts = false })
 end)
 
-test("growing passages are followed", function()
+test("passages of such a place at growing intervals are followed", function()
     local run = expect(block, { M = function(_, theta, v) return (theta > 0 and -1 or 1) + 3 * v end, velocity0 = 1e-3, t_end = 6 }, { parts = false })
     assert(run.theta:abs():max() > 1e-3, run.theta:max())
 end)
 
-test("rk4, which samples such loads, comes to rest as well", function()
+test("a body comes to rest at such a place under rk4, which samples loads", function()
     for _, M in ipairs { passes(1, 0.2), relay } do
         local task, sys = { M = M, theta0 = 1, t_end = 20 }, system { I = 1, k = 0.5, Rd = 0.3 }
         local truth = sys:simulate(task)
@@ -526,7 +526,7 @@ test("a feedback of the velocity and a preload hold a body together, as dry fric
     near(run.velocity[#run.t], v, 1e-13)
 end)
 
-test("what rests on the surface of a slide neither switches by rounding nor lets a stop there bear and release", function()
+test("a body at rest on the surface of a slide is not switched by rounding, and a stop there does not close and open", function()
     local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
     -- A clutch pulls a body that a preload holds at its elastic stop.
     local run = system {
@@ -562,7 +562,7 @@ test("what rests on the surface of a slide neither switches by rounding nor lets
     equal(stuck.status, "end")
 end)
 
-test("a feedback that changes just beside a body at rest is decided where the body is", function()
+test("a feedback that changes just beside a body at rest is evaluated where the body is", function()
     local sign = function(x) return x > 0 and 1 or x < 0 and -1 or 0 end
     local run = system { I = 2, k = 0, C = 0.5, Rd = 0.5, spring = sign }:simulate {
         M = function(_, x, v) return -0.5 * sign(x + v) end, theta0 = 0.1, t_end = 8,

@@ -1,4 +1,4 @@
--- sys:steady and run:steady as a user sees them: what is found, what is told, what is refused. Run by dinal.
+-- sys:steady and run:steady: motions, descriptions and refused questions. Run by dinal.
 dofile "tests/lua/support.lua"
 
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
@@ -281,7 +281,7 @@ test("walls end the range of rest", function()
     end
 end)
 
-test("what a base does counts for the range of rest as the load -I a", function()
+test("a base counts for the range of rest as the load -I a", function()
     local sys, shake = system{ I = 2, k = 4, Rd = 0.5 }, excitation.harmonic{ amplitude = 0.1, omega = 1.3 }
     for by, half in pairs{ [2] = 0.5, [0] = 0.3 } do -- the load cancels the base, or there is none: Re/k less |M - I a|/k
         finds(sys, { M = by * shake, base = shake }, { status = "adheres", ["rest.upper"] = half / 4, ["rest.lower"] = -half / 4, within = 1e-12 })
@@ -339,7 +339,7 @@ test("linear growth has the rate of its closed form", function()
     equal(tostring(driven), "grows: without bound")
 end)
 
-test("a search begins with the states of the run, and after a step of M is over", function()
+test("a search begins with the states of the run, and after a step of M has ended", function()
     local flip = { when = function(t) return t - 5 end, act = function(_, theta, velocity, z) z.z = -1 return theta, velocity end }
     local run = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }:simulate{ t_end = 20, dt = 1, events = { flip },
         M = excitation.harmonic{ omega = 1.3 } + excitation.scripted(function(_, _, _, z) return z.z end),
@@ -416,12 +416,12 @@ test("a rest is stable only where no small disturbance grows", function()
     end
 end)
 
-test("a rest at 0, searched from there, is compared with starts of a size", function()
+test("a rest at 0 that was searched from 0 is compared with starts of finite size", function()
     local undamped = system { I = 1, k = 1, C = .1 }:steady { M = function(t, theta, velocity) return .1 * velocity end }
     for _, other in ipairs(undamped.others) do assert(other.amplitude > .01, tostring(other)) end
 end)
 
-test("what rotates and what rests is said body by body", function()
+test("the answer says of each body whether it rotates or rests", function()
     local s = system { bodies = { a = { I = 1, C = 1 }, b = { I = 1, k = 1, Rd = .1 } } }:steady { M = { a = 2 } }
     assert(s:explain():find("a moves at the constant velocity 2. b is at rest.", 1, true), s:explain())
 end)

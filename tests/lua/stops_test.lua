@@ -99,7 +99,7 @@ end)
 -- in two parts may have other events.
 local function runs(of, task, wanted) return expect(of, task, merged({ parts = false }, wanted)) end
 
-test("a motion that leaves its rest is not asked for more than the rounding of M", function()
+test("a motion that starts from rest is not required to be more accurate than the rounding of M", function()
     local table_of = friction.table { speed = { 0, 0.3, 1.2 }, torque = { 0.4527, 0.3522, 0.5416 } }
     local rig = { bodies = { a = { I = 1.48, C = 0.08, k = 0.407, friction = table_of }, b = { I = 0.931, k = 1.393 } },
         links = { l = { "a", "b", ratio = 2.229, Rd = 0.255, k = 0.893, normal = function(t) return math.max(0, 1 + 1.486 * math.sin(1.004 * t)) end } } }
@@ -144,7 +144,7 @@ test("sliders beside dry friction slip only where their contact slips", function
     end
 end)
 
-test("the slope of a belt is not asked for more digits than it has far from t = 0", function()
+test("the slope of a belt far from t = 0 is not required to have more digits than it can have", function()
     local normal = function(t) return math.sin(1.021 * t) > 0 and 1 or 0.3 end
     local belt = function(t) return 0.314194 * math.sin(1.38117 * t) + 0.0619454 * math.sin(2.76233 * t + 4.435) end
     runs({ I = 0.33700739463091, k = 1.5781273779083, C = 0.03783044200749, Rd = 0.1051028529772, normal = normal },

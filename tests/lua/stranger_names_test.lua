@@ -1,4 +1,4 @@
--- What a stranger's file says does not steer the terminal of who prints it.
+-- Names in a stranger's file cannot control the terminal on which they are printed.
 dofile "tests/lua/support.lua"
 
 local evil = "\27]0;owned\7\27[2J\27[8m"

@@ -1,5 +1,5 @@
--- One problem written in two ways has one answer: mirrored, later in time, with a link to a body that stands still in
--- place of the ground, with the torque of a base in place of the base, with a doubled law in place of a doubled load.
+-- One problem written in two ways has one answer: mirrored, later in time, with a link to a fixed body instead of the
+-- ground, with the torque of a base instead of the base, with a doubled law instead of a doubled load.
 dofile "tests/lua/support.lua"
 
 -- All systems here are of size 1; two ways differ by the rounding of the panels.
@@ -150,7 +150,7 @@ for kind, make in pairs(kinds) do
     end
 end
 
-test("what a window cuts off samples has no effect", function()
+test("samples outside a window have no effect", function()
     local t = vector.range(0, 240) / 20
     for _, method in ipairs { integrator.exact {}, integrator.spectral {}, integrator.rk4 { h = 0.01 } } do
         local function moved(outside)

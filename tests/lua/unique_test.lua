@@ -1,4 +1,4 @@
--- Whether a steady motion is the only one: what is proven, what was not seen, what there is beside it. Run by dinal.
+-- Whether a steady motion is the only one: proofs, searches from other starts, other motions. Run by dinal.
 dofile "tests/lua/support.lua"
 
 local function harmonic(r) return excitation.harmonic{ frequency = r } end
@@ -35,7 +35,7 @@ test("a bounded motion does not grow, and one of a family is not called the only
     assert(sys:steady{ M = M }.unique ~= "proven")
 end)
 
-test("a motion is not the only one where acts keep up another, and for a rig as for one body", function()
+test("a motion is not called the only one if acts maintain another one, for several bodies as for one", function()
     local sine = excitation.harmonic{ amplitude = 0.25, omega = 1.93 }
     local body = { I = 1, k = 4, C = 0.1, Rd = 0.1 }
     local function kick(_, theta, velocity) return theta, velocity + 0.6 end

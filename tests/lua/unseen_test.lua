@@ -1,5 +1,5 @@
--- A pulse far narrower than a stretch, in every kind of function that is read: found, or the gap is told.
--- What it does is known in closed form: the integral of exp(-x^2) is sqrt(pi), that of 1/cosh(x) is pi.
+-- A pulse far narrower than a stretch, in every kind of function that is read, is found, or the gap is reported.
+-- Its effect is known in closed form: the integral of exp(-x^2) is sqrt(pi), that of 1/cosh(x) is pi.
 dofile "tests/lua/support.lua"
 
 local exp, root = math.exp, math.sqrt(math.pi)
@@ -195,7 +195,7 @@ test("a very short push, over a ten millionth of the way, changes the energy by 
     near(left_over(.5, .3667, 1.3e-7, 7.4, "M"), 0, 5e-8)
 end)
 
-test("what turns in a window as narrow as a ten millionth of the way leaves it as fast as it came", function()
+test("a mass that turns in a window as narrow as a ten millionth of its way leaves it as fast as it came", function()
     local function energy_off(w, event)
         local from, push = .7, 3 / w
         local function M(t, theta) return theta > from and theta < from + w and push or 0 end
@@ -246,13 +246,13 @@ test("an unproven function is reported as the gap", function()
         return S:simulate(o).gap
     end
     equal(gap(function(t) return math.sin(t) / (1.2 + math.cos(t)) end), nil)
-    -- Nobody divides by what may be 0 and says how great the rest is.
+    -- A quotient whose denominator may be 0 has no proven bound.
     local sinc = gap(function(t) local x = 3 * (t - 4.321) return math.sin(x) / x end)
     assert(sinc > 0 and sinc < S.T0, sinc)
     for _, by in ipairs { integrator.rk4 { h = .01 }, integrator.dinal1989 { h = .01 } } do
         equal(gap(function(t) return math.sin(t) / (1.2 + math.cos(t)) end, { integrator = by }), .005)
     end
-    -- Also of a spring or a law of friction.
+    -- The gap of a spring or a law of friction is reported, too.
     local function sampled(system_of)
         system_of.I = 1
         return system(system_of):simulate { theta0 = 1, t_end = 1, dt = .5, integrator = integrator.rk4 { h = .01 } }.gap

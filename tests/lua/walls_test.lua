@@ -161,7 +161,7 @@ moves("bodies in a row that nothing but their walls pushes go on together under 
     { M = { b1 = function(t) return 1 + 0.2 * t end }, theta0 = { b1 = 1, b2 = 0.5 }, t_end = 3 },
     { events = 0, ["b3.theta"] = (4.5 + 0.9) / 2.1, ["l2.torque"] = -1.6 * 1.1 / 2.1 })
 
-test("impacts in a row that bounce end, also where only rounding is left of them", function()
+test("bouncing impacts of masses in a row end, also when only rounding is left of them", function()
     for _, e in ipairs { 0.3, 0.5, 0.7 } do
         local function link(first, second) return { first, second, walls = { upper = 0, restitution = e } } end
         local rig = { bodies = { a = { I = 1, C = 0.1 }, b = { I = 2, k = 1 }, c = { I = 0.7, C = 0.2 }, d = { I = 1.5, C = 0.1, k = 2 } },
@@ -257,7 +257,7 @@ test("a belt carries the mass against the wall and slides along it", function()
     end
 end)
 
-test("states are integrated while the mass leans, user events see impacts, and M of a state takes the mass off", function()
+test("while the mass leans on a wall states are integrated; user events see impacts, and an M of a state takes the mass off", function()
     local own = { I = 1, k = 0, walls = { upper = 0.5, restitution = 0 } }
     expect(own, { velocity0 = 1, t_end = 4, dt = 0.5, states = { z = { rate = function(t, theta) return theta end } },
         events = { { name = "down", when = function(t, theta, v) return v end } } }, { z = 0.125 + 0.5 * 3.5 })
