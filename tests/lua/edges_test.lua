@@ -13,6 +13,9 @@ test("events at one instant are reported in the order written, and all their act
         } }, { events = 3, user = { 0.25, 0.25, 0.25 } })
         equal(table.concat(run.events.name, " "), "log double more")
         near(run.events[3].velocity, 2 * run.events[1].velocity, 1e-9)
+        local function at(name, factor) return { name = name, when = function(t, theta) return factor * theta - factor * 0.77 end } end
+        run = dry:simulate { theta0 = 1, t_end = 0.2, integrator = engine, events = { at("b", 3), at("a", 1), at("c", 0.1) } }
+        equal(table.concat(run.events.name, " "), "b a c")
     end
 end)
 

@@ -186,6 +186,8 @@ test("a break of M at the start acts from the beginning, one at the end does not
         local step, level = go(excitation.step { amplitude = 0.7, at = 0 }, by, 3), go(0.7, by, 3)
         equal(step.theta, level.theta, name)
         equal(step.M[1], 0.7, name)
+        local scripted = name ~= "exact" and go(excitation.scripted(function(t) return t > 0 and 0.7 or 0 end, { breaks = { 0 } }), by, 3) or level
+        near(scripted.theta, level.theta, 1e-13)
         local with, without = go(excitation.step { amplitude = 5, at = 0.8 }, by, 0.8), go(nil, by, 0.8)
         near(with.theta, without.theta, 1e-13)
         near(with.velocity, without.velocity, 1e-12)
@@ -295,6 +297,14 @@ test("a mass that M can never move waits for any length of time at no cost", fun
     near(late.events[1].t, 50 * math.log(0.3e9), 1e-10)
 end)
 
+test("the gain of an excitation counts for whether it can ever move a mass", function()
+    local sys = system { I = 1, k = 1, Rd = 0.3 }
+    each(function(by, _, name)
+        expect(sys, { M = 5 * sine(0.1, 1), t_end = 1, integrator = by }, { slip = { math.asin(0.6) }, within = 1e-9 }, name)
+        expect(sys, { M = 0.2 * sine(1, 1), t_end = 1, integrator = by }, { status = "rest" }, name)
+    end)
+end)
+
 test("a run knows whether it began stuck, whatever happened later", function()
     local function began(sys, task, stuck)
         local story = sys:simulate(merged({ t_end = 3, dt = 0.1 }, task)):explain():gsub("%s+", " ")
@@ -384,6 +394,23 @@ test("a ramp that pulls a creeping mass forward moves it at once, though Re > Rd
             end, 0.002)
         end
     end
+end)
+
+test("a mass that turns at its limit, exceeded by however little, sticks right after", function()
+    -- Under M = s t it moves backward first. At the stop M - k theta exceeds Re by `over`, then it falls to -Re.
+    local Re, s = 0.1, -0.02
+    each(function(by, _, name)
+        for _, over in ipairs { -1e-12, 0, 1e-16, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8 } do
+            local stops = 2 * math.atan(2 * Re + over, s)
+            local run = system { I = 1, k = 1, Rd = Re }:simulate { M = excitation.ramp { slope = s }, theta0 = 3 * Re + over,
+                t_end = stops + 10.1, integrator = by }
+            local sticks = of_kind(run, "stick")
+            equal(#sticks, 1, name .. over)
+            near(sticks[1].t, stops + math.max(over, 0) / -s, 1e-12 + math.max(over, 0) / -s)
+            near(run.events[#run.events].t, stops - (2 * Re + math.max(over, 0)) / s, 1e-8)
+            equal(run.events[#run.events].kind, "slip")
+        end
+    end)
 end)
 
 test("a mass that creeps at the end of a run is stuck there, and creeps again when the run is continued", function()
