@@ -141,6 +141,14 @@ test("unannounced jumps have the effect of announced ones, in any system", funct
     end
 end)
 
+test("a jump of a belt past a sliding body turns its slip", function()
+    -- The slip is 0.9 before the jump and -1.1 after it.
+    for _, belt in ipairs { excitation.step { at = 1, amplitude = 2 }, function(t) return t < 1 and 0 or 2 end } do
+        expect({ I = 1, k = 0, Rd = 0.1 }, { belt = belt, velocity0 = 1, t_end = 14, dt = 1 }, { turn = { 1 }, stick = { 12 }, events = 2,
+            velocity = function(t) return t < 1 and 1 - 0.1 * t or math.min(2, 0.9 + 0.1 * (t - 1)) end })
+    end
+end)
+
 test("a belt may jump right after the start", function()
     local sys = system { I = 1, k = 1, C = 0.1, Rd = 0.3, Re = 0.5 }
     for _, v0 in ipairs { 0, 0.1, 0.5 } do

@@ -66,6 +66,9 @@ function support.closes(run, what, within)
     if not (total.closure < (within or 1e-11) or total.closure * total.flow < 1e-15) then
         error(("%senergy closes to %.3g of %.6g"):format(what and what .. ": " or "", total.closure, total.flow), 2)
     end
+    for _, stored in ipairs { "kinetic", "spring" } do
+        support.near(energy.finish[stored] - energy.start[stored], total[stored], 1e-11 * (total.flow + energy.start[stored]))
+    end
     return energy
 end
 

@@ -238,6 +238,14 @@ moves("a body without a load stays at its wall while rounding lets an elastic st
 -- With what each is right to: times and velocities of impacts.
 local at_walls = { { integrator.spectral {}, 1e-11 }, { integrator.rk4 { h = 0.002 }, 1e-7 } }
 
+test("a wall carries the load that presses on it, friction the load that pulls off it", function()
+    for _, way in ipairs { 1, -1 } do
+        expect({ I = 1, k = 0, Rd = 0.5, walls = { lower = -1, upper = 1, restitution = 0 } },
+            { M = function(t) return way * (t < 2 and 3 or -0.3) end, theta0 = way, t_end = 3, times = { 0.5, 1, 2.5, 3 } },
+            { friction = { 0, 0, way * 0.3, way * 0.3 }, theta = way })
+    end
+end)
+
 test("a belt carries the mass against the wall and slides along it", function()
     local vb, Rd = 0.5, 0.3
     for _, e in ipairs { 0, 0.6 } do
