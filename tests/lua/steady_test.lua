@@ -288,6 +288,20 @@ test("a base counts for the range of rest as the load -I a", function()
     end
 end)
 
+test("a mass that a jump of M releases has the multiplier by which its place of rest changes in a period", function()
+    local sys, T, h = system { I = 1, k = 1, C = 0.1, Rd = 0.5, Re = 0.6 }, 2 * math.pi / 0.15, 1e-6
+    local M = excitation.square { amplitude = 1, period = T } + excitation.harmonic { amplitude = 0.2, period = T, phase = 1 }
+    local s = sys:steady { M = M }
+    local function next_rest(theta) return (sys:simulate { M = M, theta0 = theta, t_start = T / 2 - 0.1, t_end = T - 0.1, times = {} }:at(T - 0.1)) end
+    local rest = s.run:at(T / 2 - 0.1)
+    near(s.multipliers[1].re + s.multipliers[2].re, ((next_rest(rest + h) - next_rest(rest - h)) / (2 * h)) ^ 2, 1e-7)
+end)
+
+test("friction that differs each way moves the range of rest", function()
+    local sys = system { I = 1, k = 1, friction = friction.asymmetric { forward = { Rd = 0.3 }, backward = { Rd = 0.5 } } }
+    finds(sys, { M = excitation.harmonic { amplitude = 0.1, frequency = 0.2 } }, { status = "adheres", ["rest.lower"] = 0.1 - 0.3, ["rest.upper"] = 0.5 - 0.1 })
+end)
+
 test("multipliers near a grazing are those of the motion, from whatever start it was found", function()
     -- This motion keeps 1e-3 from the speed of the belt (di Bernardo, Kowalczyk and Nordmark 2003: grazing at 1.7077997).
     -- The values are those of the variational equation, by an integrator of order 8.
