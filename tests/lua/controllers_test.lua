@@ -31,6 +31,11 @@ test("a sampled controller is called once an instant, in order, and its output i
     near(run.events[2].theta, 0.375, 1e-14)
 end)
 
+test("outputs that are delayed by several intervals arrive one after the other", function()
+    expect({ I = 1, k = 1 }, { M = excitation.sampled(function(t) return t end, { every = 0.5, delay = 1.2 }), t_end = 4, times = vector.range(0.1, 3.9, 0.25) },
+        { M = function(t) return math.max(0, (t - 1.2) // 0.5 * 0.5) end })
+end)
+
 test("a stiff state, the lag of an actuator, costs no accuracy", function()
     -- On the motion cos(t) the lagged -velocity/2 is u = sin(t)/2, and the sine beside it closes the equation of motion.
     local lag = 6e-4  -- 1e-4 T0

@@ -69,6 +69,15 @@ test("events have names, are reported once, and stop the run or act", function()
     assert(run.theta:max() <= 0.5)
 end)
 
+test("the header of a file repeats the direction of events, and which of them stops the run", function()
+    for _, direction in ipairs { "up", "down", "both" } do
+        local run = system { I = 1, k = 1 }:simulate { theta0 = 1, t_end = 20, dt = 0.5, events = {
+            { when = function(t, theta) return theta - 0.5 end, direction = direction, name = "seen" },
+            { when = function(t) return t - 15 end, stop = true } } }
+        same_events(repeated(run), run, 0)
+    end
+end)
+
 test("an act changes states through z", function()
     local run = block:simulate {
         states = { n = { rate = function() return 0 end } }, velocity0 = 1, t_end = 3, dt = 1,

@@ -38,9 +38,12 @@ end)
 
 test("a jump of velocity is an impulse, and a moved body is infinitely heavy", function()
     local jump = { velocity = excitation.step { amplitude = 2, at = 1 } }
-    local run = expect({ bodies = { crank = jump, load = { I = 3 } }, links = { gear = { "crank", "load", ratio = 2, rigid = true } } }, { t_end = 2 }, { ["load.velocity"] = 1 })
-    near(run:energy().total.input, 1.5, 1e-13)
-    equal(run.crank.events.kind[1], "impact")
+    for _, load in ipairs { "beam", "load" } do -- before and behind the crank in the order of the bodies
+        local run = expect({ bodies = { crank = jump, [load] = { I = 3 } }, links = { gear = { "crank", load, ratio = 2, rigid = true } } }, { t_end = 2 }, { [load .. ".velocity"] = 1 })
+        near(run:energy().total.input, 1.5, 1e-13)
+        near(run:energy().crank.input, 1.5, 1e-13)
+        equal(run.crank.events.kind[1], "impact")
+    end
     -- Friction gives no impulse: the load slips until it is as fast.
     for _, crank in ipairs { jump, { theta = excitation.ramp { slope = 2, at = 1 } } } do
         local rig = { bodies = { crank = crank, load = { I = 1, Rd = 0.1 } }, links = { pad = { "crank", "load", Rd = 3 } } }

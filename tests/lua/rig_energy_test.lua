@@ -70,6 +70,14 @@ test("explain describes a run of several bodies", function()
     has_not(slips.load:explain(), "because", "|M")
 end)
 
+test("an act adds the kinetic energy of the body that it changes", function()
+    local rig = system { bodies = { a = { I = 2, k = 3 }, b = { I = 5 } }, links = { l = { "a", "b", k = 1 } } }
+    local run = rig:simulate { theta0 = { a = 1 }, t_end = 4, events = { { when = function(t) return t - 1 end, act = function(_, _, v) v.b = v.b + 0.7 end } } }
+    local before, energy = run.b.events[1].velocity, closes(run)
+    near(energy.b.acts, 5 / 2 * ((before + 0.7) ^ 2 - before ^ 2), 1e-12)
+    equal(energy.a.acts, 0.0)
+end)
+
 test("explain names a support or a belt that drives several bodies", function()
     local rig = system { bodies = { a = { I = 1, k = 1, C = 0.1 }, b = { I = 1, k = 1, Rd = 0.1 } } }
     local run = rig:simulate { belt = { b = 0.2 }, base = excitation.harmonic { omega = 1 }, t_end = 20 }
