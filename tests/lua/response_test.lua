@@ -342,6 +342,11 @@ test("a response over two parameters is a response at each value of the first", 
     local picture = tostring(c:plot{ overlay = "points", show = false })
     has(picture, "amplitude", "fold")
     has(c:plot{ x = "omega", y = "amplitude", show = false }, "unstable")
+    -- A map shows the greatest stable amplitude where there are two.
+    local map = temporary ".svg"
+    c:plot{ x = "omega", y = "M0", z = "amplitude", file = map }
+    local stable = c:filter(function(row) return row.stable == 1 end)
+    has(read(map), ("greatest %.4g at"):format(stable.amplitude:max()))
     refused { { 'c:plot{ overlay = "jumps" }', "the overlay 'jumps' has no M0" } }
 end)
 
