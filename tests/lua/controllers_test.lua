@@ -55,7 +55,7 @@ test("after a very short transient the run continues at normal speed", function(
     end
 end)
 
-test("a run that begins later meets the instants that follow, and a relay beyond its threshold switches at the start", function()
+test("a run that begins later meets the instants that follow, and a relay switches at the start only beyond its threshold", function()
     local at = {}
     local M = excitation.sampled(function(t) at[#at + 1] = t return 0 end, { every = 0.3, at = 0.1 })
     system { I = 1, k = 1 }:simulate { M = M, t_start = 0.65, t_end = 1.5 }
@@ -65,6 +65,7 @@ test("a run that begins later meets the instants that follow, and a relay beyond
         local run = system { I = 1, k = 4 }:simulate { M = relay, theta0 = 1, t_end = 0.1, dt = 0.1 }
         equal(run.M[1], -1.0)
         equal(#run.events, 0)
+        equal(system { I = 1, k = 4 }:simulate { M = relay, theta0 = 0.05, t_end = 0.01 }.M[1], start == "on" and 1.0 or -1.0)
     end
 end)
 
