@@ -53,6 +53,16 @@ struct Rest {
     Eigen::MatrixXd slopes = {};
 };
 
+/// The best fit so far, with the parameters it was begun from, which include those that are not fitted.
+struct Best : LeastSquares {
+    FitScale scale;
+    Parameters base;
+    double breakaway = 0;  // as in Rest
+    std::optional<double> rest = {};
+
+    void take(const LeastSquares& fit) { LeastSquares::operator=(fit); }
+};
+
 double omega0_of(const Parameters& p) {
     return std::sqrt(p.k / p.I);
 }
@@ -164,7 +174,6 @@ private:
     }
 
     [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows) {
-        ++runs_;
         const auto system = system_of(p);
         if (!system || !is_seen(p)) return {};
         const model::State initial{p.theta0, p.velocity0};
@@ -300,11 +309,7 @@ private:
         if (all && question_.M) seen_.emplace_back(all->sum, filled(all->parameters));
         if (!all || (best_ && !(all->sum < best_->sum))) return;
         if (best_ && all->sum < (1 - same_fit) * best_->sum) agreed_ = 0;
-        best_ = all;
-        best_base_ = base_;
-        best_rest_.reset();
-        best_scale_ = scale;
-        best_breakaway_ = breakaway_;
+        best_ = Best{*all, scale, base_, breakaway_};
     }
 
     /// The numbers of samples to fit, one after another. Each fit starts from that of a shorter part, so no swing is
@@ -387,15 +392,15 @@ private:
     /// well. If no friction permits such a rest, continues the fit without it. Returns the sum of squares, or infinity.
     double try_rest_at(double turn, bool goes_on = false) {
         rests_at_ = turn;
-        auto found = fit(moving_.value_or(best_->parameters), question_.t.size(), best_scale_, 30);
+        auto found = fit(moving_.value_or(best_->parameters), question_.t.size(), best_->scale, 30);
         if (goes_on) {
-            const auto other = fit(best_->parameters, question_.t.size(), best_scale_, 30);
+            const auto other = fit(best_->parameters, question_.t.size(), best_->scale, 30);
             if (other && (!found || other->sum < found->sum)) found = other;
         }
         constexpr double few = 4, much = 0.02;  // with less noise the fit of the moving part is a sufficient start
         const bool is_open = turn <= few && record_.noise > much * record_.range;
         for (const Parameters& start : is_open ? shares_of_loss() : std::vector<Parameters>()) {
-            const auto other = fit(fitted_of(start), question_.t.size(), best_scale_, 30);
+            const auto other = fit(fitted_of(start), question_.t.size(), best_->scale, 30);
             if (other && (!found || other->sum < found->sum)) found = other;
         }
         rests_at_.reset();
@@ -403,14 +408,14 @@ private:
         const double sum = found->sum;
         const std::optional<double> breakaway = holding(filled(found->parameters), turn);
         breakaway_ = breakaway.value_or(0);
-        if (!breakaway) found = fit(found->parameters, question_.t.size(), best_scale_, 15);
+        if (!breakaway) found = fit(found->parameters, question_.t.size(), best_->scale, 15);
         if (!found) return std::numeric_limits<double>::infinity();
         const Rest rest{*found, breakaway_, breakaway ? std::optional(turn) : std::nullopt, {}};
         if (found->sum < best_->sum || is_same(*found, *best_)) {
-            keep_if_better(found, best_scale_);
-            best_rest_ = rest.turn;
+            keep_if_better(found, best_->scale);
+            best_->rest = rest.turn;
         }
-        breakaway_ = best_breakaway_;
+        breakaway_ = best_->breakaway;
         const auto is_it = [&](const Rest& other) { return is_same(other.fit, *found); };
         if (std::ranges::none_of(rests_, is_it)) rests_.push_back(rest);
         return breakaway ? sum : std::numeric_limits<double>::infinity();
@@ -451,7 +456,7 @@ private:
     }
 
     [[nodiscard]] Parameters filled_best() {
-        base_ = best_base_;
+        base_ = best_->base;
         return filled(best_->parameters);
     }
 
@@ -566,18 +571,18 @@ private:
     /// large as the noise. Returns whether the fit has improved.
     [[nodiscard]] bool try_beyond_steps() {
         const double noise = deviation(), before = best_->sum;
-        base_ = best_base_;
+        base_ = best_->base;
         const auto J = derivative([this](const Eigen::VectorXd& q) { return predicted(filled(q), question_.t.size()); },
-                                  best_->parameters, best_scale_, noise);
+                                  best_->parameters, best_->scale, noise);
         if (!J || count() == 0) return false;
-        const auto units = best_scale_.whole.asDiagonal();
+        const auto units = best_->scale.whole.asDiagonal();
         const Eigen::VectorXd way = units * algebra::solve_least_squares(*J * units, best_->residual);
         if (!way.allFinite()) return false;
         for (const double part : {1.0, 0.5, 0.25}) {
-            const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_scale_.least);
+            const Eigen::VectorXd p = (best_->parameters + part * way).cwiseMax(best_->scale.least);
             const auto theta = stopped_ ? std::nullopt : predicted(filled(p), question_.t.size());
             if (!theta || !((record_.theta - *theta).squaredNorm() < before - 0.01 * noise * noise)) continue;
-            keep_if_better(fit(p, question_.t.size(), best_scale_, 30), best_scale_);
+            keep_if_better(fit(p, question_.t.size(), best_->scale, 30), best_->scale);
             break;
         }
         return best_->sum < (1 - same_fit) * before;
@@ -632,9 +637,9 @@ private:
     /// noise. The errors remain those of the fit with this parameter free.
     void try_none(Unknown which, double little) {
         const LeastSquares best = *best_;
-        base_ = best_base_;
+        base_ = best_->base;
         const Eigen::Index place = place_of(which);
-        FitScale scale = best_scale_;
+        FitScale scale = best_->scale;
         scale.hold[place] = firm_weight * record_.range / scale.typical[place];
         Eigen::VectorXd start = best.parameters;
         start[place] = 0;
@@ -652,7 +657,7 @@ private:
             theta && (record_.theta - *theta - without->residual).cwiseAbs().maxCoeff() <= same * record_.range;
         if (rise > 0 && !is_flat) return;
         if (!freest_) freest_ = best;
-        best_ = without;
+        best_->take(*without);
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
         at(tells_nothing_, which) = is_flat;
         if (is_flat && which == Unknown::velocity0 && !question_.given.theta0) see_short_beginnings();
@@ -697,7 +702,7 @@ private:
         if (whole->maxCoeff() < record_.cut.high + beyond) record_.cut.at_high = 0;
         if (whole->minCoeff() > record_.cut.low - beyond) record_.cut.at_low = 0;
         if (record_.cut.at_low + record_.cut.at_high > 0) return;
-        if (const auto uncut = fit(best_->parameters, question_.t.size(), best_scale_, 15)) best_ = uncut;
+        if (const auto uncut = fit(best_->parameters, question_.t.size(), best_->scale, 15)) best_->take(*uncut);
     }
 
     /// A lower bound of the standard error: for a parabolic sum of squares, each sampled motion that fits nearly as
@@ -746,14 +751,14 @@ private:
     /// Selects the most probable way to rest. Its covariance, in units of noise squared, includes the uncertainty due
     /// to the other ways.
     [[nodiscard]] Rest weigh_rests() {
-        base_ = best_base_;
+        base_ = best_->base;
         const double noise = deviation(), least = best_->sum;
-        Rest best{freest_.value_or(*best_), best_breakaway_, best_rest_};
+        Rest best{freest_.value_or(*best_), best_->breakaway, best_->rest};
         find_covariance(best, noise);
         if (freest_ && noise > 0) {
             const Eigen::VectorXd apart = (freest_->parameters - best_->parameters) / noise;
             best.covariance.matrix += apart * apart.transpose();
-            Rest held{*best_, best_breakaway_, best_rest_};
+            Rest held{*best_, best_->breakaway, best_->rest};
             find_covariance(held, noise);
             best.covariance.matrix.diagonal() =
                 best.covariance.matrix.diagonal().cwiseMax(held.covariance.matrix.diagonal());
@@ -771,8 +776,8 @@ private:
             return (least - rest.fit.sum) / (2 * noise * noise) + rest.covariance.log_volume;
         };
         for (const Rest& rest : ways) best = evidence(rest) > evidence(best) ? rest : best;
-        best_ = best.fit;
-        best_breakaway_ = best.breakaway;
+        best_->take(best.fit);
+        best_->breakaway = best.breakaway;
         Covariance all{Eigen::MatrixXd::Zero(count(), count()), best.covariance.silent, best.covariance.open, 0};
         double odds = 0;
         for (const Rest& rest : ways) {
@@ -799,7 +804,6 @@ private:
         if (M.has_feedback()) {
             const std::size_t n = question_.t.size();
             const Pushed pushed = [&](const model::Excitation& added) -> std::optional<Eigen::VectorXd> {
-                ++runs_;
                 const auto other = driven(system, M + added, initial, n);
                 if (!other) return {};
                 return shown(Eigen::VectorXd(other->column(motion::Column::theta).array() + best_filled_.offset));
@@ -851,7 +855,7 @@ private:
         Identified found;
         const Rest weighed = weigh_rests();
         Covariance covariance = weighed.covariance;
-        breakaway_ = best_breakaway_;
+        breakaway_ = best_->breakaway;
         found.value = best_filled_ = filled_best();
         if (!question_.M && !question_.given.Re) {
             found.value.Re = std::max(found.value.Rd, breakaway_ * found.value.k);
@@ -899,7 +903,6 @@ private:
         }
         const Eigen::VectorXd predicted_all = record_.theta - best_->residual;
         found.predicted.assign(predicted_all.begin(), predicted_all.end());
-        found.runs = runs_;
         found.cut_low = record_.cut.at_low;
         found.cut_high = record_.cut.at_high;
         return found;
@@ -1033,7 +1036,7 @@ private:
             const auto theta = predicted(p, question_.t.size());
             return theta && (record_.theta - *theta).squaredNorm() <= best_->sum + 4 * spread * spread;
         };
-        const double whole = best_scale_.whole[place_of(which)];
+        const double whole = best_->scale.whole[place_of(which)];
         constexpr double small = 1.0 / 64, wide = 8;
         double step = small * whole;
         while (step < wide * whole && !stopped_ && fits(step)) step *= 2;
@@ -1054,7 +1057,7 @@ private:
         if (!decay) return {Rd, INFINITY};
         const double half = std::numbers::pi / (omega0_of(best_filled_) * std::sqrt(1 - decay->zeta * decay->zeta));
         const double last = std::floor((record_.span - decay->first.t) / half);  // index of the last turn in the record
-        const double rest = best_rest_ ? *best_rest_ - turns_before(best_filled_) : decay->extremes - 1;
+        const double rest = best_->rest ? *best_->rest - turns_before(best_filled_) : decay->extremes - 1;
         if (rest > last) return {Rd, last < 0 ? INFINITY : k * std::fabs(decay->size_at(last))};
         const double before = rest < 1 ? INFINITY : k * decay->size_at(rest - 1);
         return {std::max(Rd, k * std::fabs(decay->size_at(rest))), before};
@@ -1133,22 +1136,19 @@ private:
     std::vector<int> columns_;  // the measured column of each sample: there is one
     std::vector<Unknown> unknowns_;
     bool seeks_Re_ = false;
-    Parameters base_{}, best_base_{};
-    double breakaway_ = 0, best_breakaway_ = 0;  // Re/k of a free decay; 0: it equals Rd/k
-    std::optional<double> rests_at_ = {};        // prescribed turn of rest of a free decay
-    bool starts_at_turn_ = false;                // whether turn 0 may lie before the start, see turns_before()
-    std::vector<Rest> rests_ = {};               // best fit for each turn of rest
-    std::optional<double> best_rest_ = {};
-    std::optional<LeastSquares> best_;
+    Parameters base_{};
+    double breakaway_ = 0;                 // Re/k of a free decay; 0: it equals Rd/k
+    std::optional<double> rests_at_ = {};  // prescribed turn of rest of a free decay
+    bool starts_at_turn_ = false;          // whether turn 0 may lie before the start, see turns_before()
+    std::vector<Rest> rests_ = {};         // best fit for each turn of rest
+    std::optional<Best> best_;
     std::optional<LeastSquares> freest_;  // best fit before undetermined parameters were set to 0
     OfEach<bool> tells_nothing_;
     // for a driven motion: sampled sums of squares and their parameters
     std::vector<std::pair<double, Parameters>> seen_;
     Parameters best_filled_{};
     std::optional<Eigen::VectorXd> moving_;  // fit of the moving part of a free decay
-    FitScale best_scale_;
     std::size_t left_out_ = 0;  // number of last turns left out, which noise or the end of the motion may have caused
-    int runs_ = 0;
     int agreed_ = 0;  // number of other fits that came to the best one, which suggests that no better one exists
     bool stopped_ = false;
 };

@@ -80,7 +80,6 @@ struct Identified {
     double noise_without_misfit = 0;
     bool has_errors = true;                ///< false if the model is so wrong that errors are meaningless
     std::optional<std::size_t> wild = {};  ///< index of a sample that makes up more than half of the sum of squares
-    int runs = 0;                          ///< number of motions compared with the record
 };
 
 /// Fails if the record is unusable: too short, constant, or with times that do not increase.
