@@ -122,25 +122,26 @@ struct Instruction {
     [[nodiscard]] int jump() const { return static_cast<int>(bits >> 7U) - 16777215; }
 };
 
+std::uint64_t bits_of(double x) {
+    return std::bit_cast<std::uint64_t>(x);
+}
+
 /// What the reader knows about a Lua register. A number that is not constant is in the formula's register with the same
 /// index.
 struct Known {
     enum class Kind : std::uint8_t { unknown, nil, no, yes, object, states, whole, number } kind = Kind::unknown;
     bool constant = true;
-    double value = 0;  ///< bits of a constant number
+    double value = 0;  ///< of a constant number
     int object = 0;    ///< index in the list of values
 
     [[nodiscard]] bool is_number() const { return kind == Kind::whole || kind == Kind::number; }
     [[nodiscard]] bool is_false() const { return kind == Kind::nil || kind == Kind::no; }
     bool operator==(const Known& other) const {
-        return same_type(other) && constant == other.constant && model::to_whole(value) == model::to_whole(other.value);
+        return same_type(other) && constant == other.constant && bits_of(value) == bits_of(other.value);
     }
     [[nodiscard]] bool same_type(const Known& other) const { return kind == other.kind && object == other.object; }
 };
 constexpr Known nil{.kind = Known::Kind::nil};
-Known constant_whole(std::int64_t x) {
-    return {.kind = Known::Kind::whole, .value = model::from_whole(x)};
-}
 Known constant_number(double x) {
     return {.kind = Known::Kind::number, .value = x};
 }
@@ -188,6 +189,12 @@ struct Frame {
 struct Obstacle {
     std::string why;
 };
+
+Known constant_whole(lua_Integer x) {
+    const auto value = static_cast<double>(x);
+    if (!(std::fabs(value) < 0x1p53)) throw Obstacle{"it has a whole number beyond 2^53"};
+    return {.kind = Known::Kind::whole, .value = value};
+}
 
 /// A branch of execution: its position in the code, and what is known there.
 struct Way {
@@ -241,20 +248,13 @@ struct Waiting {
 };
 
 // Registers of the formula: those of Lua, and the following kinds, which are numbered after them at the end.
-constexpr int most_registers = 240, first_state = 0x1000, first_help = 0x2000, first_constant = 0x4000;
+constexpr int most_registers = 240, first_state = 0x1000, first_constant = 0x4000;
 constexpr std::size_t most_steps = 3000, most_versions = 3, most_waiting = 200, deepest_calls = 30;
 constexpr int most_followed = 20000;
 
-struct Arithmetic {
-    Op number, whole;
-};
-constexpr std::array<Arithmetic, 7> arithmetic_of = {{{Op::add, Op::add_whole},
-                                                      {Op::subtract, Op::subtract_whole},
-                                                      {Op::multiply, Op::multiply_whole},
-                                                      {Op::modulo, Op::modulo_whole},
-                                                      {Op::power, Op::move},  // the result is always a float
-                                                      {Op::divide, Op::move},
-                                                      {Op::floor_divide, Op::divide_whole}}};
+/// In the order of Lua's instructions.
+constexpr std::array<Op, 7> arithmetic_of = {Op::add,   Op::subtract, Op::multiply,    Op::modulo,
+                                             Op::power, Op::divide,   Op::floor_divide};
 
 /// Functions of Lua's libraries. Those of math without an operation are translated in library().
 struct Standard {
@@ -394,11 +394,8 @@ private:
             if (is_text) return outside(OutsideValue::Kind::field, table.object, key.object);
         }
         if (key.is_number() && key.constant) {
-            const double number = key.kind == Known::Kind::number ? key.value : 0;
-            if (number == std::floor(number) && std::fabs(number) < 0x1p53) {
-                const auto whole =
-                    key.kind == Known::Kind::whole ? model::to_whole(key.value) : static_cast<std::int64_t>(number);
-                return outside(OutsideValue::Kind::element, table.object, whole);
+            if (key.value == std::floor(key.value) && std::fabs(key.value) < 0x1p53) {
+                return outside(OutsideValue::Kind::element, table.object, static_cast<std::int64_t>(key.value));
             }
         }
         throw Obstacle{"it looks up a place in a table that is not known beforehand"};
@@ -416,7 +413,7 @@ private:
         if (found.number.size() == sizeof value) std::memcpy(&value, found.number.data(), sizeof value);
         switch (found.type) {
             case Prototype::integer_number:
-                return {.kind = Known::Kind::whole, .value = value};
+                return constant_whole(std::bit_cast<lua_Integer>(value));
             case Prototype::float_number:
                 return constant_number(value);
             case Prototype::no:
@@ -440,38 +437,31 @@ private:
         return steps_.size() - 1;
     }
     int constant_register(double value) {
-        const auto [place, is_new] =
-            constant_places_.try_emplace(model::to_whole(value), first_constant + constants_.size());
+        const auto [place, is_new] = constant_places_.try_emplace(bits_of(value), first_constant + constants_.size());
         if (is_new) constants_.push_back(value);
         return static_cast<int>(place->second);
     }
     /// Returns the register of a number: that of the constant, or `place`.
-    int register_of(const Known& known, int place) { return known.constant ? constant_register(known.value) : place; }
-    static void need_number(const Known& known) {
+    int register_of(const Known& known, int place) {
         if (!known.is_number()) throw Obstacle{"it calculates with a value that is not a number"};
-    }
-    int float_register(const Known& known, int place, int help, Op conversion = Op::to_float) {
-        need_number(known);
-        if (known.kind == Known::Kind::number) return register_of(known, place);
-        if (known.constant) return constant_register(static_cast<double>(model::to_whole(known.value)));
-        emit(conversion, first_help + help, place, place);
-        return first_help + help;
+        return known.constant ? constant_register(known.value) : place;
     }
     /// Stores the result of the operation in the register; operations on constants are evaluated here.
     void calculate(Way& way, Op op, int to, int a, int b, Known::Kind kind) {
+        const bool whole = kind == Known::Kind::whole;
         if (a >= first_constant && b >= first_constant) {
             Known made{.kind = kind};
-            const auto value = [this](int place) {
-                return constants_[static_cast<std::size_t>(place - first_constant)];
-            };
-            if (!model::apply(op, value(a), value(b), made.value))
-                throw Obstacle{"it divides by zero or rounds infinity"};
+            const bool good = model::apply(op, constant_in(a), constant_in(b), made.value);
+            if (!good || (whole && !model::apply(Op::exact, made.value, made.value, made.value)))
+                throw Obstacle{"it divides by zero, or has a whole number beyond 2^53"};
             way[to] = made;
             return;
         }
         emit(op, to, a, b);
+        if (whole && op != Op::floor && op != Op::ceil) emit(Op::exact, to, to, to);
         way[to] = {.kind = kind, .constant = false};
     }
+    double constant_in(int place) const { return constants_[static_cast<std::size_t>(place - first_constant)]; }
     void copy(Way& way, int to, int from) {
         const Known known = way[from];
         if (!known.constant && to != from) emit(Op::move, to, from, from);
@@ -483,15 +473,11 @@ private:
         int place;
     };
     void arithmetic(Way& way, std::size_t which, int to, const Operand& x, const Operand& y) {
-        need_number(x.known);
-        need_number(y.known);
-        const auto [number, whole] = arithmetic_of[which];
-        if (whole != Op::move && x.known.kind == Known::Kind::whole && y.known.kind == Known::Kind::whole) {
-            return calculate(way, whole, to, register_of(x.known, x.place), register_of(y.known, y.place),
-                             Known::Kind::whole);
-        }
-        const int a = float_register(x.known, x.place, 0), b = float_register(y.known, y.place, 1);
-        calculate(way, number, to, a, b, Known::Kind::number);
+        const Op op = arithmetic_of[which];
+        const bool whole = x.known.kind == Known::Kind::whole && y.known.kind == Known::Kind::whole &&
+                           op != Op::power && op != Op::divide;
+        calculate(way, op, to, register_of(x.known, x.place), register_of(y.known, y.place),
+                  whole ? Known::Kind::whole : Known::Kind::number);
     }
 
     // ---- conditions
@@ -501,32 +487,14 @@ private:
         std::optional<bool> decided;
         std::size_t step = 0;
     };
-    Condition compare(Op number, Op whole, const Operand& x, const Operand& y) {
+    Condition compare(Op op, const Operand& x, const Operand& y) {
         if (!x.known.is_number() || !y.known.is_number()) {
-            if (number != Op::equal) throw Obstacle{"it compares values that are not numbers"};
+            if (op != Op::equal) throw Obstacle{"it compares values that are not numbers"};
             return {equal_objects(x.known, y.known)};
         }
-        int a = 0, b = 0;
-        Op op = number;
-        if (x.known.kind == Known::Kind::whole && y.known.kind == Known::Kind::whole) {
-            op = whole;
-            a = register_of(x.known, x.place), b = register_of(y.known, y.place);
-        } else {
-            for (const Known& known : {x.known, y.known}) {
-                const bool far = known.kind == Known::Kind::whole && known.constant &&
-                                 std::fabs(static_cast<double>(model::to_whole(known.value))) >= 0x1p53;
-                if (far) throw Obstacle{"it compares a whole number beyond 2^53"};
-            }
-            a = float_register(x.known, x.place, 0, Op::exact), b = float_register(y.known, y.place, 1, Op::exact);
-        }
-        if (x.known.constant && y.known.constant) {
-            double unused = 0;
-            const auto value = [this](int place) {
-                return constants_[static_cast<std::size_t>(place - first_constant)];
-            };
-            return {model::apply(op, value(a), value(b), unused)};
-        }
-        return {std::nullopt, emit(op, 0, a, b)};
+        double unused = 0;
+        if (x.known.constant && y.known.constant) return {model::apply(op, x.known.value, y.known.value, unused)};
+        return {std::nullopt, emit(op, 0, register_of(x.known, x.place), register_of(y.known, y.place))};
     }
     bool equal_objects(const Known& x, const Known& y) {
         if (x.kind != y.kind) return false;
@@ -710,10 +678,7 @@ private:
         if (way.frames.size() == 1) {
             const Known given = count > 0 ? way[from] : nil;
             const int place = given.is_number() ? register_of(given, from) : 0;
-            emit(given.kind == Known::Kind::number ? Op::give
-                 : given.is_number()               ? Op::give_whole
-                                                   : Op::fail,
-                 0, place, place);
+            emit(given.is_number() ? Op::give : Op::fail, 0, place, place);
             way.frames.clear();
             return;
         }
@@ -789,7 +754,7 @@ private:
             excitations_.push_back(std::make_shared<const model::Excitation>(excitation));
             own = constant_register(model::from_excitation(*excitations_.back()));
         }
-        calculate(way, Op::native, function, float_register(way[time], time, 0), own, Known::Kind::number);
+        calculate(way, Op::native, function, register_of(way[time], time), own, Known::Kind::number);
         deliver(way, function, 1, results);
         return true;
     }
@@ -829,28 +794,19 @@ private:
         return place->second;
     }
     void one_argument(Way& way, Op op, int function) {
-        const int from = function + 1;
-        const Known given = way[from];
-        need_number(given);
-        const bool rounds = op == Op::floor || op == Op::ceil;
-        if (given.kind == Known::Kind::whole && (rounds || op == Op::abs)) {
-            if (rounds) return copy(way, function, from);
-            const int place = register_of(given, from);
-            return calculate(way, Op::abs_whole, function, place, place, Known::Kind::whole);
-        }
-        const int place = float_register(given, from, 0);
-        calculate(way, op, function, place, place, rounds ? Known::Kind::whole : Known::Kind::number);
+        const int from = function + 1, place = register_of(way[from], from);
+        const bool rounds = op == Op::floor || op == Op::ceil, whole = way[from].kind == Known::Kind::whole;
+        if (rounds && whole) return copy(way, function, from);
+        calculate(way, op, function, place, place,
+                  rounds || (whole && op == Op::abs) ? Known::Kind::whole : Known::Kind::number);
     }
     bool logarithm(Way& way, int function, int results) {
         const Known base = way[function + 2];
-        need_number(base);
-        const double number =
-            base.kind == Known::Kind::whole ? static_cast<double>(model::to_whole(base.value)) : base.value;
-        const bool known = base.constant && (number == 2 || number == 10);
-        one_argument(way, known ? (number == 2 ? Op::log2 : Op::log10) : Op::log, function);
+        const int below = register_of(base, function + 2);
+        const bool known = base.constant && (base.value == 2 || base.value == 10);
+        one_argument(way, known ? (base.value == 2 ? Op::log2 : Op::log10) : Op::log, function);
         if (!known) {
             const Known top = way[function];
-            const int below = float_register(base, function + 2, 1);
             calculate(way, Op::log, function + 1, below, below, Known::Kind::number);
             arithmetic(way, 5, function, {top, function}, {way[function + 1], function + 1});
         }
@@ -860,12 +816,12 @@ private:
     bool library(Way& way, std::string_view name, int function, int arguments, int results) {
         const int first = function + 1, second = function + 2;
         const Known x = way[first];
-        need_number(x);
+        const int a = register_of(x, first);
         if (name == "max" || name == "min") {
             if (arguments == 1) {
                 copy(way, function, first);
             } else {
-                need_number(way[second]);
+                register_of(way[second], second);
                 return choose(way, name == "max", function, arguments, results);
             }
         } else if (name == "atan" || name == "fmod") {
@@ -873,8 +829,8 @@ private:
             if (name == "fmod" && x.kind == Known::Kind::whole && y.kind == Known::Kind::whole) {
                 throw Obstacle{"it calls math.fmod with whole numbers"};
             }
-            const int a = float_register(x, first, 0), b = float_register(y, second, 1);
-            calculate(way, name == "atan" ? Op::atan2 : Op::fmod, function, a, b, Known::Kind::number);
+            calculate(way, name == "atan" ? Op::atan2 : Op::fmod, function, a, register_of(y, second),
+                      Known::Kind::number);
         } else if (name == "tointeger") {
             if (x.kind != Known::Kind::whole) throw Obstacle{"it calls math.tointeger with a float"};
             copy(way, function, first);
@@ -891,8 +847,7 @@ private:
     bool choose(Way& way, bool greatest, int function, int arguments, int results) {
         const int first = function + 1, second = function + 2;
         const Operand x{way[first], first}, y{way[second], second};
-        const Condition second_wins =
-            greatest ? compare(Op::less, Op::less_whole, x, y) : compare(Op::less, Op::less_whole, y, x);
+        const Condition second_wins = greatest ? compare(Op::less, x, y) : compare(Op::less, y, x);
         const auto take_winner = [&](Way& chosen, int winner) {
             copy(chosen, first, winner);
             for (int i = 2; i < arguments; ++i) copy(chosen, function + i, function + i + 1);
@@ -929,25 +884,19 @@ private:
         if (start.kind != Known::Kind::whole || limit.kind != Known::Kind::whole || step.kind != Known::Kind::whole) {
             throw Obstacle{"its loop does not count in whole numbers"};
         }
-        const std::int64_t from = model::to_whole(start.value), to = model::to_whole(limit.value),
-                           by = model::to_whole(step.value);
+        const double from = start.value, to = limit.value, by = step.value;
         if (by == 0) throw Obstacle{"its loop has the step 0"};
         if (by > 0 ? from > to : from < to) return false;
-        const auto distance = by > 0 ? static_cast<std::uint64_t>(to) - static_cast<std::uint64_t>(from)
-                                     : static_cast<std::uint64_t>(from) - static_cast<std::uint64_t>(to);
-        const auto pace = by > 0 ? static_cast<std::uint64_t>(by) : static_cast<std::uint64_t>(-(by + 1)) + 1U;
-        way[a + 1] = constant_whole(static_cast<std::int64_t>(distance / pace));
+        way[a + 1].value = std::floor((to - from) / by);
         way[a + 3] = start;
         return true;
     }
     static bool loops(Way& way, int a) {
         if (!way[a].constant || !way[a + 1].constant) throw Obstacle{"its loop has no constant bounds"};
-        const auto left = static_cast<std::uint64_t>(model::to_whole(way[a + 1].value));
-        if (left == 0) return false;
-        way[a + 1] = constant_whole(static_cast<std::int64_t>(left - 1));
-        const auto next = static_cast<std::uint64_t>(model::to_whole(way[a].value)) +
-                          static_cast<std::uint64_t>(model::to_whole(way[a + 2].value));
-        way[a] = way[a + 3] = constant_whole(static_cast<std::int64_t>(next));
+        if (way[a + 1].value == 0) return false;
+        --way[a + 1].value;
+        way[a].value += way[a + 2].value;
+        way[a + 3] = way[a];
         return true;
     }
 
@@ -1159,10 +1108,8 @@ private:
                 ++now.at;
                 return true;
             case unm: {
-                need_number(way[b]);
-                const bool whole = way[b].kind == Known::Kind::whole;
                 const int from = register_of(way[b], b);
-                calculate(way, whole ? Op::negate_whole : Op::negate, a, from, from, way[b].kind);
+                calculate(way, Op::negate, a, from, from, way[b].kind);
                 return true;
             }
             case not_:
@@ -1222,23 +1169,23 @@ private:
         const auto& [i, a, b] = std::tie(now.i, now.a, now.b);
         switch (i.code()) {
             case eq:
-                return compare(Op::equal, Op::equal_whole, now.in_register(a), now.in_register(b));
+                return compare(Op::equal, now.in_register(a), now.in_register(b));
             case lt:
-                return compare(Op::less, Op::less_whole, now.in_register(a), now.in_register(b));
+                return compare(Op::less, now.in_register(a), now.in_register(b));
             case le:
-                return compare(Op::less_equal, Op::less_equal_whole, now.in_register(a), now.in_register(b));
+                return compare(Op::less_equal, now.in_register(a), now.in_register(b));
             case eqk:
-                return compare(Op::equal, Op::equal_whole, now.in_register(a), constant_of(now, i.b()));
+                return compare(Op::equal, now.in_register(a), constant_of(now, i.b()));
             case eqi:
-                return compare(Op::equal, Op::equal_whole, now.in_register(a), immediate(i.signed_b()));
+                return compare(Op::equal, now.in_register(a), immediate(i.signed_b()));
             case lti:
-                return compare(Op::less, Op::less_whole, now.in_register(a), immediate(i.signed_b()));
+                return compare(Op::less, now.in_register(a), immediate(i.signed_b()));
             case lei:
-                return compare(Op::less_equal, Op::less_equal_whole, now.in_register(a), immediate(i.signed_b()));
+                return compare(Op::less_equal, now.in_register(a), immediate(i.signed_b()));
             case gti:
-                return compare(Op::less, Op::less_whole, immediate(i.signed_b()), now.in_register(a));
+                return compare(Op::less, immediate(i.signed_b()), now.in_register(a));
             case gei:
-                return compare(Op::less_equal, Op::less_equal_whole, immediate(i.signed_b()), now.in_register(a));
+                return compare(Op::less_equal, immediate(i.signed_b()), now.in_register(a));
             default:
                 return std::nullopt;
         }
@@ -1280,12 +1227,10 @@ private:
         const std::size_t states = arguments_.state_count();
         const bool motion = arguments_.count >= 3 && arguments_.bodies.empty();
         const auto used = static_cast<std::size_t>(std::max(used_, 3));
-        std::vector<double> registers(used + states + 2);
+        std::vector<double> registers(used + states);
         registers.insert(registers.end(), constants_.begin(), constants_.end());
         const auto placed = [&](std::uint16_t place) -> std::uint16_t {
-            const std::size_t behind_states = used + states;
-            if (place >= first_constant) return static_cast<std::uint16_t>(behind_states + 2 + place - first_constant);
-            if (place >= first_help) return static_cast<std::uint16_t>(behind_states + place - first_help);
+            if (place >= first_constant) return static_cast<std::uint16_t>(used + states + place - first_constant);
             if (place >= first_state) return static_cast<std::uint16_t>(used + place - first_state);
             return place;
         };
@@ -1306,7 +1251,7 @@ private:
     std::vector<double> constants_;
     model::Formula::Excitations excitations_;
     std::map<int, int> excitation_registers_;  ///< by index in the list of values
-    std::map<std::int64_t, std::size_t> constant_places_;
+    std::map<std::uint64_t, std::size_t> constant_places_;
     int used_ = 0, followed_ = 0;
     bool has_returned_ = false;
     std::pair<std::shared_ptr<const Function>, std::size_t> place_;
@@ -1318,7 +1263,7 @@ bool is_same(lua_State* L) {
     if (!numbers) return lua_rawequal(L, -1, -2) != 0;
     if (lua_isinteger(L, -1) != lua_isinteger(L, -2)) return false;
     if (lua_isinteger(L, -1) != 0) return lua_tointeger(L, -1) == lua_tointeger(L, -2);
-    return model::to_whole(lua_tonumber(L, -1)) == model::to_whole(lua_tonumber(L, -2));
+    return bits_of(lua_tonumber(L, -1)) == bits_of(lua_tonumber(L, -2));
 }
 
 /// Returns whether all outside values are unchanged. `values` is the index of the list of values.

@@ -78,34 +78,10 @@ Interval tangent(const Interval& a) {
     return a.hi - a.lo < half_turn && (below.lo > 0 || below.hi < 0) ? wider(ends(Op::tan, a)) : anything;
 }
 
-/// Operations on whole numbers that vary over the interval. They result from floor or ceil, so crude bounds are enough.
-Interval of_whole(Op op, const Interval& a, const Interval& b) {
-    constexpr double exact = 0x1p53;
-    Interval r = anything;
-    switch (op) {
-        case Op::to_float:
-        case Op::exact:
-            r = a;
-            break;
-        case Op::add_whole:
-            r = {a.lo + b.lo, a.hi + b.hi};
-            break;
-        case Op::subtract_whole:
-            r = {a.lo - b.hi, a.hi - b.lo};
-            break;
-        case Op::negate_whole:
-            r = {-a.hi, -a.lo};
-            break;
-        case Op::multiply_whole:
-            r = corners(Op::multiply, a, b);
-            break;
-        case Op::modulo_whole:
-            r = image(Op::modulo, a, b);
-            break;
-        default:
-            break;
-    }
-    return std::max(std::fabs(r.lo), std::fabs(r.hi)) < exact ? r : anything;
+/// The range of whole numbers that are exact.
+Interval exactly(const Interval& a) {
+    constexpr double whole_numbers = 0x1p53;
+    return std::max(std::fabs(a.lo), std::fabs(a.hi)) < whole_numbers ? a : anything;
 }
 
 /// Operations that are smooth only between folds.
@@ -126,7 +102,7 @@ Interval fold(Op op, const Interval& a, const Interval& b) {
         }
         default: {
             const auto step = [op](double x) { return op == Op::floor ? std::floor(x) : std::ceil(x); };
-            return of_whole(Op::to_float, {step(a.lo), step(a.hi)}, {});
+            return exactly({step(a.lo), step(a.hi)});
         }
     }
 }
@@ -135,7 +111,7 @@ Interval fold(Op op, const Interval& a, const Interval& b) {
 
 Interval image(Op op, const Interval& a, const Interval& b) {
     if (a.is_anything() || b.is_anything()) return anything;
-    if (op >= Op::add_whole && op <= Op::exact) return of_whole(op, a, b);
+    if (op == Op::exact) return exactly(a);
     if (is_fold(op)) {
         const auto decision = decision_over(op, a, b);
         if (!decision || op == Op::floor_divide) return fold(op, a, b);
@@ -186,17 +162,14 @@ std::optional<double> decision_over(Op op, const Interval& a, const Interval& b)
     if (a.is_anything() || b.is_anything()) return {};
     switch (op) {
         case Op::less:
-        case Op::less_whole:
             if (a.lo >= b.hi) return 0;
             if (a.hi < b.lo) return 1;
             return {};
         case Op::less_equal:
-        case Op::less_equal_whole:
             if (a.lo > b.hi) return 0;
             if (a.hi <= b.lo) return 1;
             return {};
         case Op::equal:
-        case Op::equal_whole:
             if (a.hi < b.lo || a.lo > b.hi) return 0;
             return {};
         case Op::abs:
@@ -248,6 +221,7 @@ double radius(Op op, const Disc& a, const Disc& b, double c) {
         case Op::subtract:
             return a.r + b.r;
         case Op::negate:
+        case Op::exact:
             return a.r;
         case Op::multiply:
             return std::fabs(a.c) * b.r + std::fabs(b.c) * a.r + a.r * b.r;
@@ -331,8 +305,7 @@ Walk::Slot Walk::combined(Op op, const Slot& a, const Slot& b) const {
 /// The result of a folding operation whose decision is held, also beyond the piece.
 Walk::Slot Walk::on_piece(Op op, const Slot& a, const Slot& b, double decision) const {
     if (op == Op::abs) return decision < 0 ? combined(Op::negate, a, a) : a;
-    if (op == Op::floor_divide) return number(decision);
-    if (op != Op::modulo && op != Op::fmod) return number(from_whole(static_cast<std::int64_t>(decision)));
+    if (op != Op::modulo && op != Op::fmod) return number(decision);
     Slot rest = combined(Op::subtract, a, combined(Op::multiply, number(decision), b));
     rest.disc.c = std::fma(-decision, b.disc.c, a.disc.c);  // exact, like the operation itself
     const double rounded = 4 * unit * std::max(std::fabs(a.range.lo), std::fabs(a.range.hi));
@@ -353,8 +326,6 @@ Walk::Result Walk::run(std::optional<std::size_t> condition) {
             place = s.yes;
         } else if (s.op == Op::give) {
             return as_result(a);
-        } else if (s.op == Op::give_whole && a.constant) {
-            return as_result(number(static_cast<double>(to_whole(a.disc.c))));
         } else if (s.op >= Op::give) {
             return undecided;
         } else if (s.op == Op::move) {

@@ -13,76 +13,21 @@
 namespace dinal::model {
 namespace {
 
+constexpr double whole_numbers = 0x1p53;  // all below it are doubles
+
 std::uint64_t bits(double x) {
     return std::bit_cast<std::uint64_t>(x);
 }
-double from_bits(std::uint64_t x) {
-    return std::bit_cast<double>(x);
-}
 
-/// Modulo and floor division as Lua defines them: the sign is that of the divisor, and a quotient rounds down.
+/// Modulo as Lua defines it: the sign is that of the divisor.
 double float_modulo(double a, double b) {
     const double rest = std::fmod(a, b);
     return (rest > 0 ? b < 0 : rest < 0 && b > 0) ? rest + b : rest;
 }
-std::int64_t whole_modulo(std::int64_t a, std::int64_t b) {
-    if (b == -1) return 0;
-    const std::int64_t rest = a % b;
-    return rest != 0 && (rest ^ b) < 0 ? rest + b : rest;
-}
-std::int64_t whole_quotient(std::int64_t a, std::int64_t b) {
-    if (b == -1) return static_cast<std::int64_t>(0U - static_cast<std::uint64_t>(a));
-    const std::int64_t quotient = a / b;
-    return (a ^ b) < 0 && a % b != 0 ? quotient - 1 : quotient;
-}
-
-bool rounded(double x, double& to) {
-    constexpr double limit = 0x1p63;
-    if (!(x >= -limit && x < limit)) return false;
-    to = from_whole(static_cast<std::int64_t>(x));
-    return true;
-}
-
-/// Applies an operation on whole numbers or a conversion between whole numbers and floats. Returns false if it fails,
-/// and for any other operation.
-inline bool operate_on_whole(Op op, double a, double b, double& to) {
-    switch (op) {
-        case Op::add_whole:
-            to = from_bits(bits(a) + bits(b));
-            return true;
-        case Op::subtract_whole:
-            to = from_bits(bits(a) - bits(b));
-            return true;
-        case Op::multiply_whole:
-            to = from_bits(bits(a) * bits(b));
-            return true;
-        case Op::modulo_whole:
-            if (to_whole(b) == 0) return false;
-            to = from_whole(whole_modulo(to_whole(a), to_whole(b)));
-            return true;
-        case Op::divide_whole:
-            if (to_whole(b) == 0) return false;
-            to = from_whole(whole_quotient(to_whole(a), to_whole(b)));
-            return true;
-        case Op::negate_whole:
-            to = from_bits(0U - bits(a));
-            return true;
-        case Op::abs_whole:
-            to = to_whole(a) < 0 ? from_bits(0U - bits(a)) : a;
-            return true;
-        case Op::to_float:
-            to = static_cast<double>(to_whole(a));
-            return true;
-        case Op::exact:
-            to = static_cast<double>(to_whole(a));
-            return std::fabs(to) < 0x1p53;
-        case Op::floor:
-            return rounded(std::floor(a), to);
-        case Op::ceil:
-            return rounded(std::ceil(a), to);
-        default:
-            return false;
-    }
+/// Stores a whole number, without the sign of -0. Returns false if Lua has a number that a double may not hold.
+bool exactly(double x, double& to) {
+    to = x + 0.0;
+    return std::fabs(x) < whole_numbers;
 }
 
 /// Applies any operation except conditions. Operations on floats are tested first, as they are the most frequent.
@@ -158,8 +103,12 @@ inline bool operate_on_whole(Op op, double a, double b, double& to) {
             if (!std::isfinite(a)) return false;
             to = to_excitation(b).value(a);
             return true;
+        case Op::floor:
+            return exactly(std::floor(a), to);
+        case Op::ceil:
+            return exactly(std::ceil(a), to);
         default:
-            return operate_on_whole(op, a, b, to);
+            return op == Op::exact && exactly(a, to);
     }
 }
 
@@ -169,14 +118,8 @@ bool holds(Op op, double a, double b) {
             return a < b;
         case Op::less_equal:
             return a <= b;
-        case Op::equal:
-            return a == b;
-        case Op::less_whole:
-            return to_whole(a) < to_whole(b);
-        case Op::less_equal_whole:
-            return to_whole(a) <= to_whole(b);
         default:
-            return to_whole(a) == to_whole(b);
+            return a == b;
     }
 }
 
@@ -197,10 +140,8 @@ double decision_of(Op op, double a, double b, double result) {
         case Op::modulo:
         case Op::fmod:
             return std::nearbyint((a - result) / b);
-        case Op::floor_divide:
-            return result;
         default:
-            return static_cast<double>(to_whole(result));
+            return result;
     }
 }
 
@@ -250,18 +191,13 @@ double run(const Formula::Step* first, double* r, const Held& held) {
                 s = first + (a <= b ? s->yes : s->no);
                 continue;
             case Op::equal:
-            case Op::less_whole:
-            case Op::less_equal_whole:
-            case Op::equal_whole:
-                s = first + (holds(s->op, a, b) ? s->yes : s->no);
+                s = first + (a == b ? s->yes : s->no);
                 continue;
             case Op::jump:
                 s = first + s->yes;
                 continue;
             case Op::give:
                 return a;
-            case Op::give_whole:
-                return static_cast<double>(to_whole(a));
             default:
                 if (!operate(s->op, a, b, r[s->to])) return failure;
                 ++s;
@@ -298,10 +234,8 @@ double result_on(Op op, double a, double b, double decision) {
         case Op::modulo:
         case Op::fmod:
             return std::fma(-decision, b, a);  // exact, as the operation itself is
-        case Op::floor_divide:
-            return decision;
         default:
-            return from_whole(static_cast<std::int64_t>(decision));
+            return decision;
     }
 }
 
@@ -395,9 +329,8 @@ void Formula::find_levels() {
     const auto use = [&](std::uint64_t of) { each(of, [&](std::size_t at) { levels_.erase(at); }); };
     const auto compare = [&](std::uint64_t of, Op op, std::size_t with, bool left) {
         if (!is_constant[with]) return use(of);
-        const double bits = registers_[with], level = op >= Op::less_whole ? static_cast<double>(to_whole(bits)) : bits;
-        const bool equals = op == Op::equal || op == Op::equal_whole;
-        const bool strict = op == Op::less || op == Op::less_whole;
+        const double level = registers_[with];
+        const bool equals = op == Op::equal, strict = op == Op::less;
         each(of, [&](std::size_t at) {
             const auto found = levels_.find(at);
             if (found == levels_.end()) return;
@@ -422,7 +355,7 @@ void Formula::find_levels() {
         } else if (s.op == Op::jump) {
             lead(s.yes);
         } else {
-            const bool passes = s.op == Op::move || s.op == Op::to_float || s.op == Op::exact;
+            const bool passes = s.op == Op::move || s.op == Op::exact;
             if (!passes) use(of[s.a] | of[s.b]);
             if (s.op >= Op::give) continue;
             const auto stair = std::find(stairs.begin(), stairs.end(), node.key());
@@ -471,7 +404,6 @@ bool is_beyond(const terms::Piece& piece, std::size_t at, Op op, double a, doubl
 
 void Formula::decide(terms::Piece& piece, double t, const State& state, std::span<const double> states,
                      std::uint64_t again) {
-    constexpr double whole_numbers = 0x1p53;
     terms::Piece made{.decisions = std::vector<double>(steps_.size(), std::numeric_limits<double>::quiet_NaN()),
                       .owner = piece.owner};
     start(t, state, states);
@@ -550,6 +482,7 @@ namespace {
 double rate_of(Op op, double a, double b, double da, double db) {
     switch (op) {
         case Op::move:
+        case Op::exact:
             return da;
         case Op::add:
             return da + db;
@@ -594,7 +527,7 @@ double rate_of(Op op, double a, double b, double da, double db) {
         case Op::native:
             return failure;
         default:
-            return 0;  // whole numbers
+            return 0;  // floor and ceil
     }
 }
 
@@ -809,7 +742,7 @@ private:
                 here = at_step[s.yes];
             } else {
                 here = at_step[is_comparison(s.op) ? s.yes : at + 1];
-                // An operation on whole numbers may fail, which decides as well.
+                // What rounds or is exact may fail, which decides as well.
                 char how = is_comparison(s.op) || is_fold(s.op) || s.op >= Op::native ? decides : no;
                 if (is_comparison(s.op)) {
                     for (std::size_t i = 0; i < here.size(); ++i) read(i, at_step[s.no][i]);
@@ -824,21 +757,12 @@ private:
         }
     }
 
-    static bool takes_whole(Op op) {
-        return (op >= Op::add_whole && op <= Op::exact) || (op >= Op::less_whole && op <= Op::equal_whole);
-    }
-    /// The range of an operand, with whole numbers converted to floats.
-    static bounds::Interval as_floats(Op op, const Range& r) {
-        if (r.is_anything() || !takes_whole(op)) return r;
-        return {static_cast<double>(to_whole(r.lo)), static_cast<double>(to_whole(r.hi))};
-    }
     std::optional<bool> decide(Op op, const Range& a, const Range& b) {
         if (a.is_known() && b.is_known()) return holds(op, a.lo, b.lo);
-        const bounds::Interval x = as_floats(op, a), y = as_floats(op, b);
-        if (x.is_anything() || y.is_anything()) return std::nullopt;
-        if (const auto decision = bounds::decision_over(op, x, y)) return *decision != 0;
+        if (a.is_anything() || b.is_anything()) return std::nullopt;
+        if (const auto decision = bounds::decision_over(op, a, b)) return *decision != 0;
         if (!a.folds && !b.folds) {
-            const double least = x.lo - y.hi, part = -least / (x.hi - y.lo - least);
+            const double least = a.lo - b.hi, part = -least / (a.hi - b.lo - least);
             part_ = a.is_known() ? 1 - part : part;
         }
         return std::nullopt;
@@ -855,12 +779,7 @@ private:
             return r;
         }
         if (op == Op::move) return {{a.lo, a.hi}};
-        const bounds::Interval x = as_floats(op, a), y = as_floats(op, b);
-        static_cast<bounds::Interval&>(r) = bounds::image(op, x, y);
-        const bool gives_whole = op == Op::floor || op == Op::ceil || (takes_whole(op) && op < Op::to_float);
-        if (gives_whole && !r.is_anything()) {
-            r.lo = from_whole(static_cast<std::int64_t>(r.lo)), r.hi = from_whole(static_cast<std::int64_t>(r.hi));
-        }
+        static_cast<bounds::Interval&>(r) = bounds::image(op, a, b);
         if (op == Op::native) fold(to_excitation(b.lo), a, r);
         if (!is_fold(op)) return r;
         if (const auto decision = bounds::decision_over(op, a, b)) {
@@ -870,7 +789,7 @@ private:
         r.folds = true;
         double first = 0;
         const bool alone = op == Op::abs || op == Op::floor || op == Op::ceil;
-        if (!a.is_anything() && (alone || b.is_one()) && operate(op, a.lo, b.lo, first)) {
+        if (!a.folds && !a.is_anything() && (alone || b.is_one()) && operate(op, a.lo, b.lo, first)) {
             part_ = (next_fold(op, a.lo, b.lo, first) - a.lo) / (a.hi - a.lo);
         }
         return r;
@@ -924,11 +843,11 @@ namespace {
 
 /// Maps doubles to consecutive integers in the same order.
 std::int64_t rank(double x) {
-    const std::int64_t whole = to_whole(x);
+    const auto whole = std::bit_cast<std::int64_t>(x);
     return whole < 0 ? std::numeric_limits<std::int64_t>::min() - whole : whole;
 }
 double at_rank(std::int64_t rank) {
-    return from_whole(rank < 0 ? std::numeric_limits<std::int64_t>::min() - rank : rank);
+    return std::bit_cast<double>(rank < 0 ? std::numeric_limits<std::int64_t>::min() - rank : rank);
 }
 
 /// Returns where to divide an interval: just before or after the suspected change, and each third time in its middle.

@@ -18,11 +18,9 @@
 
 namespace dinal::model {
 
-/// An operation on registers. Floats and whole numbers (64 bits that wrap) are distinguished by the operation, not by
-/// the register.
+/// An operation on registers. Lua's whole numbers are doubles here, which `exact` keeps below 2^53.
 enum class Op : std::uint16_t {
     move,
-    // floats
     add,
     subtract,
     multiply,
@@ -45,34 +43,20 @@ enum class Op : std::uint16_t {
     abs,
     fmod,
     native,  ///< the value at a time (a) of the excitation whose address b holds; fails if the time is not finite
-    // whole numbers
-    add_whole,
-    subtract_whole,
-    multiply_whole,
-    modulo_whole,
-    divide_whole,
-    negate_whole,
-    abs_whole,
-    // conversions: `exact` fails for whole numbers beyond 2^53, floor and ceil fail beyond 64 bits
-    to_float,
-    exact,
+    exact,   ///< the same whole number, without the sign of -0; fails beyond 2^53, as floor and ceil do
     floor,
     ceil,
     // conditions: continue at the step `yes` or `no`
     less,
     less_equal,
     equal,
-    less_whole,
-    less_equal_whole,
-    equal_whole,
     jump,  ///< continues at `yes`
     give,
-    give_whole,
     fail,  ///< the formula has no result here: call the function itself
 };
 
-/// Applies the operation to two registers (a unary operation gets the same one twice). Returns false on failure, such
-/// as an integer division by 0; a comparison returns its truth.
+/// Applies the operation to two registers (a unary operation gets the same one twice). Returns false on failure; a
+/// comparison returns its truth.
 bool apply(Op op, double a, double b, double& to);
 
 /// The decision that selects the smooth piece of an operation: the truth of a comparison, the sign of the operand of
@@ -80,20 +64,13 @@ bool apply(Op op, double a, double b, double& to);
 double decision_of(Op op, double a, double b, double result);
 
 inline bool is_comparison(Op op) {
-    return op >= Op::less && op <= Op::equal_whole;
+    return op >= Op::less && op <= Op::equal;
 }
 inline bool is_fold(Op op) {
     return op == Op::abs || op == Op::floor || op == Op::ceil || op == Op::modulo || op == Op::floor_divide ||
            op == Op::fmod;
 }
 
-/// A register holds a double; a whole number is stored as its bits.
-inline double from_whole(std::int64_t whole) {
-    return std::bit_cast<double>(whole);
-}
-inline std::int64_t to_whole(double bits) {
-    return std::bit_cast<std::int64_t>(bits);
-}
 /// A register can also hold the address of an excitation of native terms that the formula owns.
 inline double from_excitation(const Excitation& excitation) {
     return std::bit_cast<double>(&excitation);

@@ -67,6 +67,7 @@ std::optional<TermSum> result_of(Op op, const TermSum& a, const TermSum& b) {
     TermSum made = a;
     switch (op) {
         case Op::move:
+        case Op::exact:
             return a;
         case Op::add:
             made.add(b, 1);
@@ -147,26 +148,20 @@ std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) 
     if (!common) return {};
     switch (op) {
         case Op::move:
-        case Op::to_float:
         case Op::exact:
             return a;
         case Op::add:
-        case Op::add_whole:
             return Repeating{a.slope + b.slope, *common};
         case Op::subtract:
-        case Op::subtract_whole:
             return Repeating{a.slope - b.slope, *common};
         case Op::negate:
-        case Op::negate_whole:
             return Repeating{-a.slope, a.period};
         case Op::multiply:
-        case Op::multiply_whole:
             if (a.constant) return Repeating{*a.constant * b.slope, b.period};
             if (b.constant) return Repeating{a.slope * *b.constant, a.period};
             break;
         case Op::divide:
-        case Op::floor_divide:
-        case Op::divide_whole: {
+        case Op::floor_divide: {
             if (!b.constant || *b.constant == 0) break;
             const Repeating quotient{a.slope / *b.constant, a.period};
             return op == Op::divide ? quotient : in_steps(quotient, 1);
@@ -174,8 +169,7 @@ std::optional<Repeating> repeats(Op op, const Repeating& a, const Repeating& b) 
         case Op::floor:
         case Op::ceil:
             return in_steps(a, 1);
-        case Op::modulo:
-        case Op::modulo_whole: {
+        case Op::modulo: {
             const auto turned = b.constant && *b.constant != 0 ? in_steps(a, *b.constant) : std::nullopt;
             if (!turned) break;
             return Repeating{0, turned->period};
@@ -218,7 +212,6 @@ double Formula::period() const {
     };
     lead(0, Registers(registers_.size(), Repeating{}));
     ways[0][0] = Repeating{.slope = 1};
-    // The type of a constant, float or whole number, is determined by the operation that reads it.
     std::vector<char> written(registers_.size(), 0);
     written[0] = 1;
     for (const Step& s : steps_) {
@@ -231,9 +224,7 @@ double Formula::period() const {
         const Step& s = steps_[at];
         const auto read = [&](std::size_t i) {
             if (written[i] != 0) return now[i];
-            const bool whole = (s.op >= Op::add_whole && s.op <= Op::exact) || s.op >= Op::less_whole;
-            const double value = whole ? static_cast<double>(to_whole(registers_[i])) : registers_[i];
-            return std::optional(Repeating{.constant = value});
+            return std::optional(Repeating{.constant = registers_[i]});
         };
         const auto a = read(s.a), b = read(s.b);
         if (s.op >= Op::less && s.op < Op::jump) {
@@ -241,7 +232,7 @@ double Formula::period() const {
             lead(s.yes, now), lead(s.no, now);
         } else if (s.op == Op::jump) {
             lead(s.yes, now);
-        } else if (s.op == Op::give || s.op == Op::give_whole) {
+        } else if (s.op == Op::give) {
             take(a);
         } else if (s.op != Op::fail) {
             now[s.to] = a && b ? repeats(s.op, *a, *b) : std::nullopt;
@@ -274,10 +265,6 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         const Step& s = steps_[at];
         const double x = r[s.a], y = r[s.b];
         const auto &a = registers[s.a], &b = registers[s.b];
-        if (s.op == Op::give_whole) {
-            sum.powers = {static_cast<double>(to_whole(x))};
-            break;
-        }
         if (s.op == Op::give) {
             if (!a) return {};
             sum = *a;
@@ -292,7 +279,7 @@ std::optional<Excitation> Formula::terms(double from, double inside) const {
         if (!apply(s.op, x, y, result)) return {};
         std::optional<TermSum> made;
         const bool staircase = s.op == Op::floor || s.op == Op::ceil || s.op == Op::floor_divide;
-        if (staircase || (s.op >= Op::add_whole && s.op <= Op::exact)) {
+        if (staircase) {
             made = TermSum{.powers = {result}};  // constant on this piece
         } else if (a && s.op == Op::abs) {
             made = product_of(*a, {.powers = {x < 0 ? -1.0 : 1.0}});

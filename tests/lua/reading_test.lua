@@ -39,9 +39,12 @@ end
 
 local list, deep = { 3, 4.5, 6 }, { a = 1, b = { c = 0.25, n = 3 }, f = math.cos }
 
-test("whole numbers wrap", function()
-    same_values(function(t) local n = math.maxinteger if t > 0 then n = n + 1 end return n end, "at once")
-    same_values(function(t) return math.floor(t) * math.maxinteger + (math.mininteger // -1) end, "later")
+test("whole numbers beyond 2^53 are left to Lua", function()
+    not_read(function(t) local n = math.maxinteger if t > 0 then n = n + 1 end return n end, "beyond 2^53")
+    not_read(function(t) return t + 3000000000 * 4000000 end, "beyond 2^53")
+    same_values(function(t) return math.floor(t) * 1048576 * 1048576 - math.floor(t // 2) end, "products")
+    same_values(function(t) return math.floor(t) % 3 // math.ceil(t) end, "quotients")
+    same_values(function(t) return 1 / (-1e300 * (0 * math.floor(t)) - 1) + math.atan(-math.floor(t), -1) end, "zeros")
 end)
 
 test("a function that is not a formula is not read, and the line is named", function()
