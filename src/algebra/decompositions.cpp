@@ -1,48 +1,15 @@
 #include "algebra/decompositions.hpp"
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
 #include <limits>
-#include <new>
-#include <string>
 
 namespace dinal::algebra {
 namespace {
-
-class FactoredSparse final : public Factored {
-public:
-    explicit FactoredSparse(const Eigen::SparseMatrix<double>& A) {
-        decomposition_.compute(A);
-        // Eigen catches a failed allocation and reports it with "MEMORY" in the message; a singular matrix fails
-        // likewise.
-        const bool lacks_memory = decomposition_.lastErrorMessage().find("MEMORY") != std::string::npos;
-        if (decomposition_.info() != Eigen::Success && lacks_memory) throw std::bad_alloc();
-    }
-    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const override {
-        if (decomposition_.info() == Eigen::Success) {
-            x = decomposition_.solve(b);
-        } else {
-            x = Eigen::VectorXd::Constant(b.size(), std::numeric_limits<double>::quiet_NaN());
-        }
-    }
-
-private:
-    Eigen::SparseLU<Eigen::SparseMatrix<double>> decomposition_;
-};
 
 /// A square matrix needs no QR step before its singular value decomposition.
 using SingularValues = Eigen::JacobiSVD<Eigen::MatrixXd, Eigen::NoQRPreconditioner>;
 
 }  // namespace
-
-std::unique_ptr<const Factored> factored_sparse(Eigen::Index size, const std::vector<Entry>& entries) {
-    std::vector<Eigen::Triplet<double>> triplets;
-    triplets.reserve(entries.size());
-    for (const Entry& entry : entries) triplets.emplace_back(entry.row, entry.column, entry.value);
-    Eigen::SparseMatrix<double> A(size, size);
-    A.setFromTriplets(triplets.begin(), triplets.end());
-    return std::make_unique<FactoredSparse>(A);
-}
 
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A) {
     return A.inverse();

@@ -1,29 +1,12 @@
-// Linear systems, least squares and eigenvalues of dense and sparse matrices. Eigen's decompositions take seconds to
-// compile: each is compiled once, in decompositions.cpp, and other rooms include no more of Eigen than Core.
+// Linear systems, least squares and eigenvalues of dense matrices. Eigen's decompositions take seconds to compile: each is
+// compiled once, in decompositions.cpp, and other rooms include no more of Eigen than Core.
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
-
-#include "text/not_copied.hpp"
 
 namespace dinal::algebra {
 
-/// Solves A x = b for a square matrix A that was factored once.
-class Factored : text::NotCopied {
-public:
-    virtual ~Factored() = default;
-    virtual void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) const = 0;
-};
-
-/// An entry of a sparse matrix.
-struct Entry {
-    Eigen::Index row, column;
-    double value;
-};
-
-std::unique_ptr<const Factored> factored_sparse(Eigen::Index size, const std::vector<Entry>& entries);
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& A);
 Eigen::MatrixXcd inverse(const Eigen::MatrixXcd& A);
 double determinant(const Eigen::MatrixXd& A);

@@ -13,7 +13,7 @@ constexpr double clear_of_noise = 1e4;                             // factor by 
 constexpr double least_difference = 1e-8, most_difference = 1e-4;  // increment of differences, relative to the variable
 constexpr std::size_t most_factors = 24;
 constexpr Eigen::Index few_unknowns = 8;    // with so few unknowns matrices are dense, even for a chain
-constexpr Eigen::Index many_unknowns = 64;  // with so many unknowns the matrix is sparse, unless it has a narrow band
+constexpr Eigen::Index many_unknowns = 64;  // with so many unknowns even wide bands are not inverted
 using Complex = std::complex<double>;
 
 /// The product without the standard's checks for infinities.
@@ -263,10 +263,6 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
         left.noalias() = inverse * right;
         return;
     }
-    if (sparse != nullptr) {
-        sparse->solve(right, left);
-        return;
-    }
     const IntegrationModes& each = integration_modes();
     constexpr auto size = static_cast<Eigen::Index>(inner);
     const Eigen::Index rows = right.size() / size;
@@ -289,16 +285,18 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
             if (imaginary >= 0) left(at + imaginary) = in_order[k].imag();
         }
     }
-    Eigen::Matrix<Complex, Eigen::Dynamic, 1, 0, many_unknowns, 1> of_mode(band < 0 ? rows : 0);
     for (std::size_t i = 0; i < each.values.size() && band < 0; ++i) {
         const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
         for (Eigen::Index r = 0; r < rows; ++r) {
-            of_mode(r) = {left(r * size + real), imaginary < 0 ? 0 : left(r * size + imaginary)};
+            in_order[static_cast<std::size_t>(r)] = {left(r * size + real),
+                                                     imaginary < 0 ? 0 : left(r * size + imaginary)};
         }
         const std::complex<double>* matrix = of_modes.data() + static_cast<Eigen::Index>(i) * rows * rows;
         for (Eigen::Index r = 0; r < rows; ++r) {
             std::complex<double> sum = 0;
-            for (Eigen::Index c = 0; c < rows; ++c) sum += matrix[c * rows + r] * of_mode(c);
+            for (Eigen::Index c = 0; c < rows; ++c) {
+                sum += matrix[c * rows + r] * in_order[static_cast<std::size_t>(c)];
+            }
             left(r * size + real) = sum.real();
             if (imaginary >= 0) left(r * size + imaginary) = sum.imag();
         }
@@ -414,9 +412,6 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
         if (r == c) own += Inner::Identity();
         return own;
     };
-    const auto empty = [&](Eigen::Index r, Eigen::Index c) {
-        return r != c && (c >= groups || slopes_(r, c) == 0) && slopes_(r, groups + c) == 0;
-    };
     const bool known = found != factors_.end() && std::fabs(found->first - h) <= 1e-6 * h;
     if (!known) {
         if (factors_.size() >= most_factors) factors_.clear();
@@ -432,32 +427,14 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     if (linear && known) {
         Eigen::MatrixXd A = Eigen::MatrixXd::Zero(size * rows, size * rows);
         for (Eigen::Index r = 0; r < rows; ++r) {
-            for (Eigen::Index c = 0; c < rows; ++c) {
-                if (!empty(r, c)) A.block<inner, inner>(r * size, c * size) = block(r, c);
-            }
+            for (Eigen::Index c = 0; c < rows; ++c) A.block<inner, inner>(r * size, c * size) = block(r, c);
         }
         made.inverse = algebra::inverse(A), made.off = size_if_well(A, made.inverse);
         return made;
     }
     if (rows >= few_unknowns && order_.empty()) find_order(groups);
-    const bool narrow =
-        rows >= few_unknowns && (4 * band_ < rows || (rows >= many_unknowns && 2 * band_ < many_unknowns));
-    if (narrow && factor_band(h, groups, made)) return made;
-    if (rows < many_unknowns) {
-        factor_modes(h, groups, made);
-        return made;
-    }
-    std::vector<algebra::Entry> entries;
-    for (Eigen::Index r = 0; r < rows; ++r) {
-        for (Eigen::Index c = 0; c < rows; ++c) {
-            if (empty(r, c)) continue;
-            const Inner own = block(r, c);
-            for (Eigen::Index i = 0; i < size; ++i) {
-                for (Eigen::Index k = 0; k < size; ++k) entries.push_back({r * size + i, c * size + k, own(i, k)});
-            }
-        }
-    }
-    made.sparse = algebra::factored_sparse(size * rows, entries);
+    const bool banded = rows >= few_unknowns && (4 * band_ < rows || rows >= many_unknowns);
+    if (!banded || !factor_band(h, groups, made)) factor_modes(h, groups, made);
     return made;
 }
 

@@ -54,13 +54,12 @@ public:
 private:
     /// Newton's matrix for one length. For a few linear groups that many stretches use, it is inverted. Otherwise it
     /// splits into one complex matrix for each eigenvalue of the integration (Butcher 1976; one of each conjugate
-    /// pair), and steps are accurate to ten digits. For a chain these matrices are banded in the order of `order`. For
-    /// very many unknowns without a band the whole matrix is sparse.
+    /// pair), and steps are accurate to ten digits. For a chain, and for very many unknowns, these matrices are banded
+    /// in the order of `order`.
     struct Factors {
         int asked = 0;  ///< number of uses
         Eigen::MatrixXd inverse;
         double off = 0;  ///< norm of the matrix minus the unit matrix, if the inverse is accurate to rounding
-        std::unique_ptr<const algebra::Factored> sparse;
         /// inverses in column-major order, or L and U by rows, for each eigenvalue
         std::vector<std::complex<double>> of_modes;
         Eigen::Index band = -1;           ///< half band width of L and U; -1: inverses
