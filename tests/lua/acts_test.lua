@@ -210,4 +210,16 @@ test("an act at a jump or on a narrow peak of its event's function happens once 
     end
 end)
 
+test("an event whose function steps is told once at each step, by each integrator", function()
+    local sys = system { I = 1, k = 1, C = 0.05, Rd = 0.01 }
+    local function over(t, theta) return theta + 0.1 * t > 0.2 and 1 or -1 end
+    for _, by in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-9 } } do
+        for _, when in ipairs { over, unread(over), function(t, theta) return theta + 0.1 * t - 0.2 end } do
+            -- At t = 9.26 and 9.33 it steps for a moment.
+            local run = sys:simulate { theta0 = 1, t_end = 9, dt = 1, integrator = by, events = { { when = when } } }
+            equal(#of_kind(run, "user"), 2, tostring(by))
+        end
+    end
+end)
+
 finish()

@@ -437,12 +437,6 @@ std::optional<double> Guards::switches(double sign, double level, std::size_t k)
     return values[0] < 0 ? -1 : Watched(values, exact, 0, series).leaves(half, -1);
 }
 
-/// The first point after the start whose time and angles differ from it by more than rounding.
-double Guards::soon() const {
-    constexpr double few = 64;
-    return std::min(1.0, -1 + few * rounding * std::max(1.0, std::fabs(now_.t.hi) / segment_.h));
-}
-
 void Guards::watch_relays(std::size_t load) {
     const Signal& of = mechanics_.loads()[load];
     for (std::size_t r = 0; r < of.relays(); ++r) {
@@ -453,7 +447,7 @@ void Guards::watch_relays(std::size_t load) {
         const auto left = [&](const Moment& at) { return of.until_switch(r, at); };
         Nodes values = segment_.at_nodes(left, point_);
         // Where the function jumps past both thresholds, the rounding of the start must not switch it back.
-        if (values[0] < 0) values[0] = segment_.anywhere(left, point_)(soon());
+        if (values[0] < 0) values[0] = segment_.anywhere(left, point_)(soon(segment_));
         Half half = 1;
         see(values[0] < 0 ? -1 : leaves(values, left, half), static_cast<int>(r));
     }

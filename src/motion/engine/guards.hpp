@@ -67,7 +67,6 @@ private:
         return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
     }
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
-    [[nodiscard]] double soon() const;
     [[nodiscard]] double fastest(std::size_t joint) const;
     [[nodiscard]] bool is_kept(std::size_t joint) const;
     [[nodiscard]] double least_inertia(std::size_t joint) const;

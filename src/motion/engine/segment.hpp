@@ -1,7 +1,9 @@
 // A stretch is an interval of smooth motion, integrated as one step; a Segment holds its result.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -93,5 +95,11 @@ struct Ending {
 
 /// Zeros closer than this count as simultaneous.
 inline constexpr double one_instant = 64 * rounding;
+
+/// The first point after the start whose time and angles differ from it by more than rounding.
+inline double soon(const Segment& s) {
+    constexpr double few = 64;
+    return std::min(1.0, -1 + few * rounding * std::max(1.0, std::fabs(s.start.hi) / s.h));
+}
 
 }  // namespace dinal::motion::engine

@@ -26,6 +26,8 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
         Half half = watch.half;
+        // Where the value jumps, rounding of the start may put it back before the jump.
+        if (const double after = soon(segment); half * values[0] < 0 && half * exact(after) > 0) from = after;
         while (const auto x = curve.leaves(half, from)) {
             if (!(place(*x) < before)) break;
             if (watch.sent_back && !curve.is_clearly(half, *x)) return {.again = e};
