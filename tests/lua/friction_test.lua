@@ -245,6 +245,19 @@ end)
 
 local waves, by_panels = excitation.harmonic { amplitude = 0.8, omega = 0.7 }, integrator.spectral {}
 
+test("a body between two contacts of equal strength neither moves nor hinders the others", function()
+    local function run(Rd)
+        return system { bodies = { a = { I = 0.5, Rd = Rd }, b = { I = 2 }, c = { I = 1, k = 2 } },
+            links = { clutch = { "a", "b", Rd = 0.1 }, shaft = { "b", "c", k = 2, Rd = 0.5 } } }
+            :simulate { M = { b = function(t) return 1.5 * math.sin(0.7 * t) end, c = -1 }, theta0 = { c = 0.2 }, t_end = 4 }
+    end
+    local held = run(0.2)
+    for _, Rd in ipairs { 0.1, 0.1 + 1e-9 } do
+        near(run(Rd).b.theta, held.b.theta, 1e-13)
+        assert(run(Rd).a.theta:abs():max() < 1e-15)
+    end
+end)
+
 test("the energy adds up under every law, and rows contain its friction", function()
     local function quadratic(v) return 0.25 + 0.1 * v ^ 2 end
     for name, case in pairs {
