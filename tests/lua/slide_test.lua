@@ -609,6 +609,14 @@ test("feedbacks of several bodies move a machine as dry friction does", function
         end
         if i == 2 then equal(#run.events, #truth.events) end
     end
+    -- That of a link whose bodies begin to move together is decided by the slip between them.
+    for _, strong in ipairs { 2, 3, 4 } do
+        local function run(Rd, M)
+            return system { bodies = { a = { I = 1, k = 5 }, b = { I = 1, Rd = 0.2 } }, links = { l = { "a", "b", k = 0.5, Rd = Rd } } }
+                :simulate { M = { a = function(t) return strong * math.cos(t) end, l = M }, t_end = 8 }
+        end
+        near(run(1, function(_, _, v) return v.a > v.b and -0.3 or 0.3 end).a.theta, run(1.3).a.theta, 1e-13)
+    end
 end)
 
 test("a place to which a load drives a body back holds it also where a link's preload reverses", function()

@@ -146,25 +146,40 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     }
     std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
     bool starts_with_belt = false;
-    standing_.resize(n);
+    std::vector<double> rates;  // of y, if other bodies or belts move beside one that leaves
+    const std::size_t joints = mechanics_.joints();
+    standing_.resize(joints);
+    for (std::size_t j = 0; j < joints; ++j) {
+        const Slipping& how = mode.friction[j];
+        const bool leaves = mode.rubs[j] != 0 && how.leaving && mode.leans[j] == 0;
+        const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(j) || how.riding ? 1 : 0;
+        for (const model::Weight& weight : mechanics_.system().joints[j].of) {
+            const std::size_t bit = mechanics_.system().named ? n + weight.body : 1;
+            if (now != 0 && now != standing_[j] && bit < 64) (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
+        }
+        standing_[j] = now;
+        // Where several bodies begin to move, their rates decide.
+        if (leaves && n > 1 && rates.empty()) rates = slides_.free_rates(mode, at);
+    }
     for (std::size_t i = 0; i < n; ++i) {
         const Slipping& how = mode.friction[i];
-        const bool leaves = mode.rubs[i] != 0 && how.leaving && mode.leans[i] == 0;
-        const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(i) || how.riding ? 1 : 0;
-        const std::size_t bit = mechanics_.system().named ? n + i : 1;
-        if (now != 0 && now != standing_[i] && bit < 64) (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
-        standing_[i] = now;
+        const bool leaves = standing_[i] > 1;
         double& v = y[n + i];
         if (leaves && std::fabs(v - belt_of(i, at)) <= least_slip(i, at)) {
             sizes_.find(mechanics_, last, at);
             const double size = sizes_.on(mechanics_.system().joints[i]);
             double rate = size / mechanics_.system().bodies[i].inertia;
             starts_with_belt = starts_with_belt || mechanics_.has_belt(i);
-            if (mechanics_.has_belt(i)) rate = std::max(0.0, model::sign_of(how.way) * slides_.slip_rate(i, mode, at));
+            const bool beside_others = n > 1 || mechanics_.has_belt(i);
+            if (beside_others && rates.empty()) rates = slides_.free_rates(mode, at);
+            if (beside_others) rate = std::max(0.0, model::sign_of(how.way) * slides_.slip_rate(i, rates, at));
             const double speed = little_later * unit_ * rate;
             t = mechanics_.next_break(at.t) <= soon ? at.t : soon;
             v = belt_of(i, {t, at.side, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
         }
+    }
+    for (std::size_t i = 0; i < n && !rates.empty(); ++i) {
+        if (standing_[i] == 0) y[n + i] += little_later * unit_ * rates[n + i];
     }
     mechanics_.let_laws_act(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {

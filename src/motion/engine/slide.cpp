@@ -129,9 +129,12 @@ std::vector<double> Slides::rates_at(const Moment& at) const {
     return rates;
 }
 
-double Slides::slip_rate(std::size_t joint, const Mode& mode, const Moment& at) {
+std::vector<double> Slides::free_rates(const Mode& mode, const Moment& at) {
     mode_ = mode;
-    const std::vector<double> rates = rates_at({at.t, at.side, at.y, true});
+    return rates_at({at.t, at.side, at.y, true});
+}
+
+double Slides::slip_rate(std::size_t joint, const std::vector<double>& rates, const Moment& at) const {
     return mechanics_.velocity(joint, rates) - belt_rate(joint, at);
 }
 

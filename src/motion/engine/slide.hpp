@@ -50,8 +50,10 @@ public:
     [[nodiscard]] bool keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
     /// Moves the bodies on until after_touch, with the velocities of those that belts carry along. Returns that moment.
     Moment carry_on(const Moment& at, const Mode& mode, std::vector<double>& y) const;
-    /// The rate of the slip of a joint in this mode, with functions evaluated at this very moment, not on their pieces.
-    [[nodiscard]] double slip_rate(std::size_t joint, const Mode& mode, const Moment& at);
+    /// The rates of y in this mode, with functions evaluated at this very moment, not on their pieces.
+    [[nodiscard]] std::vector<double> free_rates(const Mode& mode, const Moment& at);
+    /// The rate of the slip of a joint at these rates of y.
+    [[nodiscard]] double slip_rate(std::size_t joint, const std::vector<double>& rates, const Moment& at) const;
     /// Sets the mode of contacts to evaluate with.
     void follow(const Mode& mode) { mode_ = mode; }
     /// Ends slides if sticking contacts now hold the velocities of the surface, so that the load does not move them.
