@@ -1,5 +1,5 @@
-// Linear systems, least squares and eigenvalues of dense matrices. Eigen's decompositions take seconds to compile: each is
-// compiled once, in decompositions.cpp, and other rooms include no more of Eigen than Core.
+// Linear systems, least squares and eigenvalues of dense matrices. Eigen's decompositions take seconds to compile: each
+// is compiled once, in decompositions.cpp, and other rooms include no more of Eigen than Core.
 #pragma once
 
 #include <Eigen/Core>
