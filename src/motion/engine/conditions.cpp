@@ -153,13 +153,22 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const Slipping& how = mode.friction[j];
         const bool leaves = mode.rubs[j] != 0 && how.leaving && mode.leans[j] == 0;
         const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(j) || how.riding ? 1 : 0;
-        for (const model::Weight& weight : mechanics_.system().joints[j].of) {
+        const model::Joint& joint = mechanics_.system().joints[j];
+        // Where several bodies begin to move, their rates decide. One at its limit has none yet.
+        if (leaves && n > 1 && rates.empty()) rates = slides_.free_rates(mode, at);
+        bool clear = j < n;
+        if (leaves && !clear) {
+            constexpr double clearly = 1e-6;
+            sizes_.find(mechanics_, last, at);
+            const double size = sizes_.on(joint) * joint.lightness(mechanics_.system().bodies);
+            clear = model::sign_of(how.way) * slides_.slip_rate(j, rates, at) > clearly * size;
+        }
+        for (const model::Weight& weight : joint.of) {
             const std::size_t bit = mechanics_.system().named ? n + weight.body : 1;
-            if (now != 0 && now != standing_[j] && bit < 64) (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
+            if (now == 0 || now == standing_[j] || !clear || bit >= 64) continue;
+            (leaves ? of_leaving : again) |= std::uint64_t{1} << bit;
         }
         standing_[j] = now;
-        // Where several bodies begin to move, their rates decide.
-        if (leaves && n > 1 && rates.empty()) rates = slides_.free_rates(mode, at);
     }
     for (std::size_t i = 0; i < n; ++i) {
         const Slipping& how = mode.friction[i];
