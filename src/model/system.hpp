@@ -140,6 +140,9 @@ struct System {
         }
         return {};
     }
+    bool has_freewheels() const {
+        return std::ranges::any_of(joints, [](const Joint& joint) { return joint.friction.law.is_one_way(); });
+    }
     bool has_moved() const {
         return std::ranges::any_of(bodies, [](const Body& body) { return body.moved.has_value(); });
     }

@@ -154,9 +154,9 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const bool leaves = mode.rubs[j] != 0 && how.leaving && mode.leans[j] == 0;
         const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(j) || how.riding ? 1 : 0;
         const model::Joint& joint = mechanics_.system().joints[j];
-        // Where several bodies begin to move, their rates decide. One at its limit has none yet.
-        if (leaves && n > 1 && rates.empty()) rates = slides_.free_rates(mode, at);
-        bool clear = j < n;
+        // Where bodies begin to move beside others or on belts, their rates decide.
+        if (leaves && (n > 1 || mechanics_.has_belt(j)) && rates.empty()) rates = slides_.free_rates(mode, at);
+        bool clear = j < n;  // a link that has just reached its limit has no rate yet, and is not decided anew
         if (leaves && !clear) {
             constexpr double clearly = 1e-6;
             sizes_.find(mechanics_, last, at);
@@ -179,9 +179,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
             const double size = sizes_.on(mechanics_.system().joints[i]);
             double rate = size / mechanics_.system().bodies[i].inertia;
             starts_with_belt = starts_with_belt || mechanics_.has_belt(i);
-            const bool beside_others = n > 1 || mechanics_.has_belt(i);
-            if (beside_others && rates.empty()) rates = slides_.free_rates(mode, at);
-            if (beside_others) rate = std::max(0.0, model::sign_of(how.way) * slides_.slip_rate(i, rates, at));
+            if (!rates.empty()) rate = std::max(0.0, model::sign_of(how.way) * slides_.slip_rate(i, rates, at));
             const double speed = little_later * unit_ * rate;
             t = mechanics_.next_break(at.t) <= soon ? at.t : soon;
             v = belt_of(i, {t, at.side, {}}) + model::sign_of(how.way) * std::max(least_slip(i, at), speed);
@@ -254,7 +252,7 @@ void Conditions::decide_by_rate(Piecewise& function, const Moment& at, const Mod
     const double h = little_later * unit_;
     const bool carried = mechanics_.has_belts();
     for (std::size_t i = 0; i < n && !carried; ++i) y[i] += h * y[n + i];
-    const Moment later = carried ? slides_.carry_on(at, mode, y) : Moment{at.t + h, at.side, y};
+    const Moment later = carried ? slides_.advance_with_belts(at, mode, y) : Moment{at.t + h, at.side, y};
     function.margins(later, then);
     for (std::size_t c = 0; c < margins.size(); ++c) {
         const bool passes = std::fabs(margins[c]) < next_to_none * std::fabs(then[c]);

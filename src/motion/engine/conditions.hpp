@@ -133,7 +133,7 @@ private:
     std::vector<SlideChange> ceased_;
     TorqueSizes sizes_;
     std::vector<double> soon_;  ///< state slightly later, after a velocity has left 0
-    /// for each body: 0 moves, 1 held by a contact, 2 or 3 about to leave in either direction
+    /// for each joint: 0 free or sliding, 1 held, 2 or 3 about to leave in either direction
     std::vector<int> standing_;
 };
 

@@ -347,7 +347,8 @@ Decider::Ways Decider::take_back() {
         const double nothing = 64 * rounding * size(j) + between_ + smallest;
         goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
         if (mechanics_.has_belt(j)) rate -= now().belt_slopes[j].rate;
-        // One that was let go at this instant without leaving, and has not reached its limit now, must leave clearly.
+        // A joint that was let go at this instant without leaving, and has not just reached its limit, must leave
+        // clearly.
         const double least = how.blunt > 0 && full_.empty() ? nothing : -nothing;
         if (!how.leaving || model::sign_of(how.way) * rate * I >= least) continue;
         if (asked_[j].taken_back) {

@@ -319,9 +319,7 @@ bool Engine::turn_sliders() {
 /// after ever smaller impacts of one after the other. The energy of a system with a moved body begins after what this
 /// changes at the start. Returns the rounding of the slip of each joint; empty if there is no freewheel.
 std::vector<double> Engine::catch_freewheels(bool at_start) {
-    bool any = false;
-    for (const Joint& joint : problem_.system.joints) any = any || joint.friction.law.is_one_way();
-    if (!any) return {};
+    if (!problem_.system.has_freewheels()) return {};
     const std::size_t joints = mechanics_.joints(), most = 50 * joints;
     std::vector<double> rounded(joints);
     for (std::size_t j = 0; j < joints; ++j) rounded[j] = 16 * rounding * mechanics_.speed_scale(j, now_.y);

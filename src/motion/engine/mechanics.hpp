@@ -115,9 +115,6 @@ std::vector<std::size_t> redundant_rigid(const model::System& system);
 Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g, const Eigen::VectorXd& low,
                              const Eigen::VectorXd& high);
 
-/// When a belt that turns, as where it only touches velocity 0, has clearly moved on, in time units of the motion.
-inline constexpr double after_touch = 1e-6;
-
 class Mechanics : text::NotCopied {
 public:
     Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);
@@ -262,6 +259,12 @@ public:
     double clear_speed(std::size_t joint, std::span<const double> y) const;
 
     double next_break(double t) const;
+    /// The time after t at which a belt that turns at t, such as one that only touches velocity 0, has clearly moved
+    /// on, before the next break. `unit` is the time scale of the motion.
+    double after_turn(double t, double unit) const {
+        constexpr double little_later = 1e-6;
+        return t + std::min(little_later * unit, (next_break(t) - t) / 2);
+    }
     double view(double t, double spacing) const;
     bool may_go_on() const;
     void forget_failure() const;

@@ -184,7 +184,7 @@ bool Engine::advance() {
 /// Returns whether joints that hold do not let moved bodies, belts or rigid links keep to their motion on the stretch,
 /// or a freewheel turns backward.
 bool Engine::strays_from_prescribed(const Frame& frame) const {
-    if (!mechanics_.has_belts() && problem_.hidden == 0) return false;
+    if (problem_.hidden == 0 && !(mechanics_.has_belts() && problem_.system.has_freewheels())) return false;
     constexpr double clearly = 1e-6;
     std::vector<double> belts(mechanics_.joints()), offsets(n());
     for (const std::size_t node : {node_count / 2, node_count - 1}) {
@@ -513,10 +513,9 @@ void Engine::find_belt_slopes(std::optional<double> x) {
         if (slope.sure() != 0) continue;
         // A belt that turns right now moves on by its curvature.
         constexpr double clearly = 1024 * rounding;
-        const double later = after_touch * pace_.unit;
-        const double v = mechanics_.belt(j, now_.t.hi, now_.side()),
-                     then = mechanics_.belt(j, now_.t.hi + later, Side::at);
-        if (std::fabs(then - v) > clearly * std::fabs(then)) slope = {(then - v) / later, 0};
+        const double later = mechanics_.after_turn(now_.t.hi, pace_.unit), length = later - now_.t.hi;
+        const double v = mechanics_.belt(j, now_.t.hi, now_.side()), then = mechanics_.belt(j, later, Side::at);
+        if (length > 0 && std::fabs(then - v) > clearly * std::fabs(then)) slope = {(then - v) / length, 0};
     }
 }
 

@@ -282,11 +282,11 @@ std::vector<double> Slides::carried_by_belts(const Mode& mode, const Moment& at)
     return carried;
 }
 
-Moment Slides::carry_on(const Moment& at, const Mode& mode, std::vector<double>& y) const {
-    const Moment later{at.t + after_touch * unit_, at.side, y};
+Moment Slides::advance_with_belts(const Moment& at, const Mode& mode, std::vector<double>& y) const {
+    const Moment later{mechanics_.after_turn(at.t, unit_), at.side, y};
     const std::vector<double> from = carried_by_belts(mode, at), to = carried_by_belts(mode, later);
     const std::size_t n = from.size();
-    for (std::size_t i = 0; i < n; ++i) y[i] += after_touch * unit_ * y[n + i], y[n + i] += to[i] - from[i];
+    for (std::size_t i = 0; i < n; ++i) y[i] += (later.t - at.t) * y[n + i], y[n + i] += to[i] - from[i];
     return later;
 }
 
@@ -294,7 +294,7 @@ Moment Slides::carry_on(const Moment& at, const Mode& mode, std::vector<double>&
 bool Slides::falls_if_held(const Sliding& of, const Side& own, const Moment& at) const {
     if (!mechanics_.has_belts()) return own.rate < 0;
     std::vector<double> soon(at.y.begin(), at.y.end());
-    const Moment later = carry_on(at, mode_, soon);
+    const Moment later = advance_with_belts(at, mode_, soon);
     const std::size_t n = mechanics_.bodies();
     for (std::size_t k = 2 * n; k < soon.size(); ++k) soon[k] += (later.t - at.t) * own.rates[k];
     std::vector<double> rates = own.rates;

@@ -48,8 +48,9 @@ public:
     /// Returns whether the slides hold the slip of a joint: whether it depends on what this frame holds and on surfaces
     /// that stand still, and on nothing that moves, such as a belt.
     [[nodiscard]] bool keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
-    /// Moves the bodies on until after_touch, with the velocities of those that belts carry along. Returns that moment.
-    Moment carry_on(const Moment& at, const Mode& mode, std::vector<double>& y) const;
+    /// Moves the bodies on, with the velocities of those that belts carry along, until a belt that turns now has
+    /// clearly moved. Returns that moment.
+    Moment advance_with_belts(const Moment& at, const Mode& mode, std::vector<double>& y) const;
     /// The rates of y in this mode, with functions evaluated at this very moment, not on their pieces.
     [[nodiscard]] std::vector<double> free_rates(const Mode& mode, const Moment& at);
     /// The rate of the slip of a joint at these rates of y.
