@@ -119,6 +119,18 @@ test("a contact whose load ends together with a step of M opens once, and the ru
     equal(rig:simulate { M = { b = excitation.square { amplitude = .2, omega = 2 } }, t_end = 20 }.t_end, 20)
 end)
 
+test("a narrow smooth peak of the load of an open contact is found, at rest, in motion and by a law with a state", function()
+    for _, w in ipairs { 1e-1, 1e-3, 1e-6 } do
+        local peak = function(t) return 2 * math.exp(-((t - 1.7) / w)^2) - 1 end
+        local closes = { 1.7 - w * math.log(2)^0.5 }
+        for _, theta0 in ipairs { 0, 0.7 } do expect({ I = 1, k = 1, Rd = 0.5, normal = peak }, { theta0 = theta0, t_end = 4 }, { close = closes }) end
+        -- An integral of 1 over the peak takes the momentum Rd where the bristle yields at once.
+        local load = function(t) return math.exp(-((t - 1.7) / w)^2) / (w * math.pi^0.5) - 1e-12 end
+        local run = system { I = 1, k = 0, normal = load, friction = friction.dahl { stiffness = 1e9, Rd = 0.3 } }:simulate { velocity0 = 1, t_end = 3, times = { 3 } }
+        near(run.velocity[1], 0.7, 1e-8)
+    end
+end)
+
 test("friction that acts over a part of the way only takes the work that it does there", function()
     for _, w in ipairs { 0.5, 0.01, 1e-5 } do
         local function zone(_, theta) return theta > 1 and theta < 1 + w and 0.3 or 0 end

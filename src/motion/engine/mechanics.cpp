@@ -455,9 +455,25 @@ double Mechanics::speed_scale(std::size_t joint, std::span<const double> y) cons
 }
 
 double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
-    const model::ContactFriction& friction = system_.joints[joint].friction;
     const Contact& contact = contacts_[joint];
     if (contact.constant) return contact.constant->sliding[side_of(how.way)];
+    return sliding_per_load(joint, how, slip, at) * load_on(joint, at);
+}
+
+double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const {
+    const Contact& contact = contacts_[joint];
+    if (contact.constant) return contact.constant->holding[side_of(way)];
+    return holding_per_load(joint, way, at) * load_on(joint, at);
+}
+
+double Mechanics::load_on(std::size_t joint, const Moment& at) const {
+    const Signal& normal = contacts_[joint].normal;
+    return normal.none() ? 1 : std::max(0.0, normal.value(at));
+}
+
+double Mechanics::sliding_per_load(std::size_t joint, const Slipping& how, double slip, const Moment& at) const {
+    const model::ContactFriction& friction = system_.joints[joint].friction;
+    const Contact& contact = contacts_[joint];
     const double speed = model::sign_of(how.way) * slip;
     const Signal& own = contact.sliding[side_of(how.way)];
     double torque = 0;
@@ -480,25 +496,15 @@ double Mechanics::sliding(std::size_t joint, const Slipping& how, double slip, c
     } else {
         torque = friction.law.sliding(how.way, speed);
     }
-    return contact.normal.none() ? torque : torque * std::max(0.0, contact.normal.value(at));
+    return torque;
 }
 
-double Mechanics::holding(std::size_t joint, Motion way, const Moment& at) const {
+double Mechanics::holding_per_load(std::size_t joint, Motion way, const Moment& at) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
-    const Contact& contact = contacts_[joint];
-    if (contact.constant) return contact.constant->holding[side_of(way)];
-    const Signal &own = contact.holding[side_of(way)], &sliding_own = contact.sliding[side_of(way)];
-    double torque = 0;
-    if (!own.none()) {
-        torque = own.value(at);
-    } else if (friction.function != nullptr) {
-        return sliding(joint, {.way = way}, 0, at);
-    } else if (!sliding_own.none()) {
-        torque = sliding_own.value(at);
-    } else {
-        torque = friction.law.holding(way);
-    }
-    return contact.normal.none() ? torque : torque * std::max(0.0, contact.normal.value(at));
+    const Signal &own = contacts_[joint].holding[side_of(way)], &sliding_own = contacts_[joint].sliding[side_of(way)];
+    if (!own.none()) return own.value(at);
+    if (friction.function != nullptr) return sliding_per_load(joint, {.way = way}, 0, at);
+    return sliding_own.none() ? friction.law.holding(way) : sliding_own.value(at);
 }
 
 double Mechanics::pressing(std::size_t joint, const Moment& at) const {
@@ -650,9 +656,7 @@ double Mechanics::bristle_torque(std::size_t joint, const Moment& at, double bel
     if (own == nullptr) return 0;
     const auto place = std::find(bristles_.begin(), bristles_.end(), joint) - bristles_.begin();
     const double z = at.y[2 * bodies() + drive_.states.size() + static_cast<std::size_t>(place)];
-    const double torque = own->torque(velocity(joint, at.y) - belt, z);
-    const Signal& normal = contacts_[joint].normal;
-    return normal.none() ? torque : torque * std::max(0.0, normal.value(at));
+    return own->torque(velocity(joint, at.y) - belt, z) * load_on(joint, at);
 }
 
 double Mechanics::size_of(std::size_t joint, const Moment& at) const {

@@ -350,10 +350,10 @@ public:
             if (slides && side != way) continue;
             f(slides || c.holding[side].none() ? c.sliding[side] : c.holding[side], pressed > 0 ? pressed : 1);
         }
-        if (c.normal.none() || !rubs(joint)) return;
-        const double torque =
-            std::fabs(slides ? sliding(joint, how, velocity(joint, at.y), at) : holding(joint, how.way, at));
-        f(c.normal, pressed > 0 ? torque / pressed : 1);
+        if (c.normal.none()) return;
+        const auto most = [&](model::Motion to) { return std::fabs(holding_per_load(joint, to, at)); };
+        f(c.normal, slides && rubs(joint) ? std::fabs(sliding_per_load(joint, how, velocity(joint, at.y), at))
+                                          : std::max(most(model::Motion::backward), most(model::Motion::forward)));
     }
     [[nodiscard]] std::vector<Signal>& loads() { return loads_; }
     const std::vector<Signal>& loads() const { return loads_; }
@@ -378,6 +378,10 @@ private:
     /// The same on the present piece of a user's function, also where the joint slides along its jump.
     double spring_torque(std::size_t joint, double angle) const;
     double law_friction(std::size_t joint, const Moment& at, const Mode& mode, double belt) const;
+    /// The factor by which a contact's load multiplies its friction.
+    double load_on(std::size_t joint, const Moment& at) const;
+    double sliding_per_load(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
+    double holding_per_load(std::size_t joint, model::Motion way, const Moment& at) const;
     /// Visits each user function.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 

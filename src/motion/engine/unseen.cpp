@@ -214,6 +214,7 @@ private:
     double middle_, half_;  ///< middle and half length of the part under test
     double late_;
     std::optional<double> place_;
+    std::vector<double> point_ = {};
 };
 
 /// The series of the time minus a delay. A stretch next to a break is shortened so as not to touch it.
@@ -371,8 +372,12 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
     if (mechanics_.has_belt(j)) {
         look_at(mechanics_.belt_signal(j), std::max(beside_.fastest_belt[j], greatest(s_.y[n_ + body])), 0);
     }
+    const bool open = mechanics_.may_open(j) && mode_.rubs[j] == 0;
     mechanics_.for_each_friction(j, mode_, middle, [&](const Signal& signal, double torque) {
-        look_at(signal, torque > 0 ? size / torque : model::never, 0);
+        // Where a contact is open there may be no torque to compare with; what counts is whether it stays open.
+        const auto value = [&](const Moment& at) { return signal.value(at); };
+        const double own = open ? greatest(s_.at_nodes(value, point_)) : 0;
+        look_at(signal, torque > 0 ? std::max(size / torque, own) : model::never, 0);
     });
     const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
     if (begin(mechanics_.asked_spring(j), between(0))) look(size, allowed, 0);
