@@ -92,6 +92,7 @@ local kinds = {
     freewheel = function() return { friction = friction.freewheel { Rd = 0.2 } } end,
     ["belt constant"] = acts(function() return { belt = 0.2 } end),
     ["belt of t"] = acts(function() return { belt = function(t) return 0.2 * math.sin(1.3 * t) end } end),
+    ["held on a belt"] = function() return { Rd = 30 }, { belt = 0.2 } end,
     base = acts(function() return { base = 0.3 * sine } end),
     ["state idle"] = acts(function()
         return { states = { z = { start = 1, rate = function(t, theta, velocity, z) return -z.z end } } }

@@ -62,12 +62,19 @@ void Engine::rows_at_end(SampledLoads& sampled) {
     recorder_->rows_at_end({then, segment_, frames_->of(then.mode), *balances_, sampled});
 }
 
-/// Returns the outcome if nothing moves at the end, otherwise empty.
+/// Returns the outcome if nothing moves at the end except on belts to which it is stuck, otherwise empty.
 std::optional<Outcome> Engine::at_rest() {
     const Frame& present = frames_->of(now_.mode);
     bool still = true, for_good = !mechanics_.samples_functions() && !problem_.joined_elsewhere;
     for (std::size_t i = 0; i < n(); ++i) {
-        still = still && present.bodies[i].empty() && (now_.y[n() + i] == 0 || problem_.joined_elsewhere);
+        const auto& joints = problem_.system.joints;
+        bool rides = problem_.joined_elsewhere;
+        for (std::size_t j = 0; j < joints.size() && !rides; ++j) {
+            rides = mechanics_.has_belt(j) && now_.mode.holds(j) && joints[j].of.size() == 1 && joints[j].first() == i;
+        }
+        const bool stands = now_.y[n() + i] == 0;
+        still = still && present.bodies[i].empty() && (stands || rides);
+        for_good = for_good && stands;
     }
     if (!still) return {};
     mechanics_.for_each_signal([&](const Signal& s) { for_good = for_good && s.constant_from() <= now_.t.hi; });
