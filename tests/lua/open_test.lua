@@ -131,6 +131,19 @@ test("a narrow smooth peak of the load of an open contact is found, at rest, in 
     end
 end)
 
+test("a contact that opens later than an event ends the stretch opens once", function()
+    local rig = system {
+        bodies = { a = { I = 0.4, Rd = 0.7, Re = 0.8, k = 0.8, normal = function(t) return 0.7 + 1.1 * math.sin(2.1 * t) end }, b = { I = 1.7, C = 0.4, k = 2.7 } },
+        links = { ab = { "a", "b", friction = friction.jenkins { stiffness = 7.2, Rd = 0.5 } } } }
+    local opens = (math.pi + math.asin(7 / 11)) / 2.1
+    for level = 0.05, 0.15, 0.01 do -- the load slides along its level while the contact opens
+        local run = rig:simulate { M = { a = function(_, _, v) return v.a > level and -0.5 or 0.5 end }, theta0 = { a = 0.3, b = -0.5 }, velocity0 = { a = -0.7, b = -0.6 }, t_end = 2 }
+        equal(run.t_end, 2)
+        equal(#run.events:filter(function(e) return e.kind == "open" end), 1)
+        near(run.events.t[#run.events], opens, 1e-12)
+    end
+end)
+
 test("friction that acts over a part of the way only takes the work that it does there", function()
     for _, w in ipairs { 0.5, 0.01, 1e-5 } do
         local function zone(_, theta) return theta > 1 and theta < 1 + w and 0.3 or 0 end

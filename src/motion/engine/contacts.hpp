@@ -24,6 +24,8 @@ struct Contacts {
         bool crept = false;        ///< whether its slip has fallen to rounding, so that it may creep
         bool leaves_wall = false;  ///< whether it begins at a wall and leaves it
         bool leaned = false;       ///< whether it stopped at a wall and that was reported
+        int load_sign = 0;         ///< sign of its normal load; 0: unknown
+        int bristle_sign = 0;      ///< sign of the slip of its bristles; 0: unknown
     };
     std::vector<Of> of;                    ///< one for each joint
     double size_at_stop = 0;               ///< magnitude of the torques when a joint last reached slip 0

@@ -192,7 +192,6 @@ private:
     Projection projection_;
     Impulses impulses_;
     UserEvents users_;
-    std::vector<Half> normal_halves_;  ///< state of each joint's normal load, for the guards
     std::optional<Frames> frames_;
     std::unique_ptr<Flow> solver_;
     std::optional<Conditions> conditions_;

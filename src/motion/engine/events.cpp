@@ -16,6 +16,10 @@ bool Engine::handle(const Ending& ending) {
         case By::nobody:
             return true;
         case By::kink:
+            if (ending.side != 0) contacts_.of[j].load_sign = ending.side;
+            return goes_on();
+        case By::bend:
+            contacts_.of[j].bristle_sign = ending.side;
             return goes_on();
         case By::stays:
             return decide(true);
@@ -161,7 +165,7 @@ bool Engine::decide(bool told, std::optional<Cause::Released> released) {
 bool Engine::nothing_presses(std::size_t joint) const {
     constexpr double later = 1e-9;
     // At its zero the load may still be positive by rounding.
-    if (normal_halves_[joint] >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
+    if (contacts_.of[joint].load_sign >= 0 && !(mechanics_.pressing(joint, now_.here()) <= 0)) return false;
     std::vector<double> y = now_.y;
     const double h = later * pace_.unit;
     for (std::size_t i = 0; i < n(); ++i) y[i] += h * y[n() + i];
@@ -180,7 +184,7 @@ bool Engine::open_and_close() {
         now_.mode.rubs[j] = opens ? 0 : 1;
         now_.mode.friction[j] = {};
         contacts_.of[j].arrived = Motion::stuck;
-        normal_halves_[j] = opens ? -1 : 1;
+        contacts_.of[j].load_sign = opens ? -1 : 1;
         const Joint& joint = problem_.system.joints[j];
         double fastest = std::fabs(mechanics_.belt(j, now_.t.hi, now_.side()));
         for (const auto& [body, by] : joint.of) {

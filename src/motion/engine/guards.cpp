@@ -20,7 +20,7 @@ const std::array<Guards::Row, 11> Guards::table{{
     {Per::joint, By::wall, &Guards::watch_wall},
     {Per::joint, By::stop, &Guards::watch_stop},
     {Per::joint, By::kink, &Guards::watch_normal},
-    {Per::joint, By::kink, &Guards::watch_bristles},
+    {Per::joint, By::bend, &Guards::watch_bristles},
     {Per::slider, By::slider, &Guards::watch_slider},
     {Per::load, By::relay, &Guards::watch_relays},
     {Per::motion, By::condition, &Guards::watch_conditions},
@@ -393,11 +393,13 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
 /// Ends the stretch at slip 0, where the rate of bristles has a corner.
 void Guards::watch_bristles(std::size_t joint) {
     if (mechanics_.bristle(joint) == nullptr) return;
-    Half& half = of_.normal_halves[joint];
+    Half& half = of_.contacts.of[joint].bristle_sign;
     const auto x = slip_leaves(joint, half);
-    if (!x || *x >= ending_.x) return;
-    if (*x > -1) see(x);
-    half = -half;
+    if (x && *x <= -1) {
+        half = -half;
+    } else {
+        see(x, -half);
+    }
 }
 
 /// Ends the stretch where the normal load crosses zero, because negative loads count as zero.
@@ -417,11 +419,9 @@ void Guards::watch_normal(std::size_t joint) {
         if (segment_.time(x) > now_.t.hi || values[0] > clearly * greatest(values)) see(x);
         return;
     }
-    Half& half = of_.normal_halves[joint];
+    Half& half = of_.contacts.of[joint].load_sign;
     const auto x = leaves(values, pressing, half);
-    if (!x || *x >= ending_.x) return;
-    see(x);
-    half = -half;
+    see(x, -half);
 }
 
 /// Returns the point at which an angle, velocity or state reaches a relay's level.

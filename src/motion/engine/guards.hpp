@@ -31,7 +31,6 @@ public:
         Contacts& contacts;
         Conditions& conditions;
         UserEvents& users;
-        std::vector<Half>& normal_halves;  ///< for each joint: sign of its normal load, or of the slip of its bristles
     };
     explicit Guards(const Of& of)
         : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}

@@ -42,8 +42,7 @@ Engine::Engine(const Request& problem, Run& result)
       breaks_(mechanics_),
       projection_(mechanics_, own_joints()),
       impulses_(mechanics_),
-      users_(mechanics_, problem.drive.events),
-      normal_halves_(mechanics_.joints(), 0) {
+      users_(mechanics_, problem.drive.events) {
     const std::size_t joints = mechanics_.joints();
     now_.y = problem.drive.theta0;
     now_.y.insert(now_.y.end(), problem.drive.velocity0.begin(), problem.drive.velocity0.end());
@@ -281,7 +280,7 @@ bool Engine::belt_jump_found() {
 /// Searches the stretch for its first event.
 Ending Engine::watch(const Frame& frame) {
     const Guards::Of of{mechanics_, segment_,   frame,     now_,         walls_, sizes_,
-                        *solver_,   *balances_, contacts_, *conditions_, users_, normal_halves_};
+                        *solver_,   *balances_, contacts_, *conditions_, users_};
     Guards guards(of);
     Ending ending = guards.first();
     if (!guards.good()) fail(Outcome::excitation_not_finite);

@@ -71,13 +71,14 @@ struct Segment : NodeTimes {
 };
 
 /// Causes that end a stretch.
-enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, stays, condition };
+enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, bend, stays, condition };
 
 struct Ending {
     double x = 1;  ///< point in the stretch, -1 to 1
     By by = By::nobody;
     std::size_t which = 0;  ///< index of the joint, or of the body of a relay
-    /// which wall, corner or direction of release; for an elastic wall 0 means it is left; the relay's index
+    /// which wall, corner or direction of release; for an elastic wall 0 means it is left; the relay's index; the
+    /// sign of a normal load or slip from now on, 0 if it is as before
     int side = 0;
     std::vector<std::size_t> users = {};  ///< user events at this instant, in the order of their definition
     /// function and index of each condition that changes
