@@ -361,4 +361,14 @@ test("a body that M cannot move again is at rest, also with a name, and with a s
     equal(rig:simulate { M = { a = 0.5 }, theta0 = { a = 0.5 }, t_end = 10, states = clock }.outcome, "at rest")
 end)
 
+test("a body that stands free beside another one does not change its motion", function()
+    local function simulated(more)
+        local rig = system { bodies = merged({ a = { I = 1.04, k = 0.7, friction = friction.dahl { Rd = 0.13, stiffness = 22 } } }, more) }
+        local slower = { when = function(_, theta) return theta.a + 0.036 end, direction = "down", act = function(_, _, v) v.a = 0.0148 * v.a end }
+        return rig:simulate { M = { a = function(t) return 0.64 * math.sin(2.46 * t + 3.5) end }, theta0 = { a = -0.29 }, velocity0 = { a = 0.05 },
+            belt = { a = -0.0139 }, events = { slower }, t_end = 12, times = { 12 } }
+    end
+    near(simulated({ free = { I = 1 } }).a.theta[1], simulated({}).a.theta[1], 1e-11)
+end)
+
 finish()

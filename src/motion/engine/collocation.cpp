@@ -12,6 +12,7 @@ constexpr int many_iterations = 4;  // after so many iterations the slopes are r
 constexpr double much = 16;
 // limit of the relative residual; a stiff rate multiplies the rounding of its steps
 constexpr double most_left_over = 1e-6;
+constexpr double least_stall = 1e-12;  // changes below this are rounding
 
 }  // namespace
 
@@ -240,23 +241,23 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
             newton_.forget();
             return Attempt::failed;
         }
-        const auto [left, stalls] = find_residual(s, frame);
+        const auto [left, small] = find_residual(s, frame);
         if (i > 0 && left <= 4 * rounding) return Attempt::resolved;
         if (slopes == Slopes::none) {
             step_ = residual_;
         } else {
             newton_.solve(s.h, frame, residual_, step_);
         }
-        const double change = take_step(s.h);
+        const auto [change, is_noise] = take_step(s.h);
         place(s, frame);
         if (!std::isfinite(change + left)) return Attempt::shorten;
         const double rate = before < std::numeric_limits<double>::infinity() ? change / before : 1;
-        const bool converged = change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) ||
-                               (i >= 2 && change <= stalls && rate > 0.3);
+        const bool converged =
+            change <= 16 * rounding || (i >= 1 && change * rate <= 4 * rounding) || (i >= 2 && is_noise && rate > 0.3);
         // Slopes that are too large, such as those of a function's previous piece, make every Newton step too small.
         const bool doubtful = from_before && left > std::max(much * change, tolerance_);
         if (converged && doubtful) return Attempt::shorten;
-        if (converged && left <= std::max(most_left_over, stalls)) {
+        if (converged && small) {
             if (i >= many_iterations) newton_.forget();
             return Attempt::resolved;
         }
@@ -271,7 +272,7 @@ Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& 
     const std::size_t groups = frame.groups(), count = unknown_.size();
     Residual found;
     find_sizes(s);
-    scales_.resize(count);
+    scales_.resize(count), stalls_.resize(count);
     for (std::size_t k = 0; k < count; ++k) {
         double moves = 0, most = 0;
         if (k < groups) {
@@ -289,20 +290,22 @@ Collocation::Residual Collocation::find_residual(const Segment& s, const Frame& 
         scales_[k] = moves + smallest;
         const double rough =
             k < groups ? noise_.of_torques() / frame.inertia[k] : noise_.floor().noise[n_ + (k - groups)];
-        found.stalls = std::max(found.stalls, of_tail * s.h * rough / scales_[k]);
+        stalls_[k] = std::max(least_stall, of_tail * s.h * rough / scales_[k]);
         for (std::size_t j = 1; j < node_count; ++j) {
             const double rest = found_[k][j] - unknown_[k][j];
             residual_(static_cast<Eigen::Index>(k * inner + j - 1)) = rest;
             most = std::max(most, std::fabs(rest));
         }
-        found.left = std::max(found.left, s.h * most / scales_[k]);
+        const double left = s.h * most / scales_[k];
+        found.left = std::max(found.left, left);
+        found.small = found.small && left <= std::max(most_left_over, stalls_[k]);
     }
     return found;
 }
 
-/// Applies the Newton step. Returns the greatest change relative to the range of motion.
-double Collocation::take_step(double h) {
-    double change = 0;
+/// Applies the Newton step.
+Collocation::Change Collocation::take_step(double h) {
+    Change change;
     for (std::size_t k = 0; k < unknown_.size(); ++k) {
         double most = 0;
         for (std::size_t j = 1; j < node_count; ++j) {
@@ -310,7 +313,9 @@ double Collocation::take_step(double h) {
             unknown_[k][j] += step;
             most = std::max(most, std::fabs(step));
         }
-        change = std::max(change, h * most / scales_[k]);
+        const double own = h * most / scales_[k];
+        change.most = std::max(change.most, own);
+        change.is_noise = change.is_noise && own <= stalls_[k];
     }
     return change;
 }

@@ -29,11 +29,15 @@ private:
     bool follow_native(Segment& segment, const Mode& mode, const Frame& frame);
     void begin_at_first_node(Segment& segment, const Frame& frame);
     struct Residual {
-        double left = 0;        ///< greatest relative residual of the equations
-        double stalls = 1e-12;  ///< changes below this are noise
+        double left = 0;    ///< greatest relative residual of the equations
+        bool small = true;  ///< whether that of each group and state is negligible, or noise
     };
     Residual find_residual(const Segment& segment, const Frame& frame);
-    double take_step(double h);
+    struct Change {
+        double most = 0;       ///< the greatest, relative to the range of motion
+        bool is_noise = true;  ///< whether that of each group and state is noise
+    };
+    Change take_step(double h);
 
     /// The end of the last stretch, with the value and three derivatives of each unknown there.
     struct {
@@ -42,6 +46,7 @@ private:
         std::vector<std::array<double, 4>> unknowns{};
     } end_;
     std::vector<double> scales_;    ///< range of motion of each group and state
+    std::vector<double> stalls_;    ///< for each of them: relative changes below this are noise
     std::vector<Nodes> of_groups_;  ///< changes of the groups' velocities
     std::vector<char> placed_;
     Eigen::VectorXd residual_, step_;
