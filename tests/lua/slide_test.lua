@@ -701,4 +701,20 @@ test("a body that is held at a moving place turns with it, and does not stick wh
     end
 end)
 
+test("a body that comes to rest on the ground and on one that a load holds still sticks to both at once", function()
+    local rig = system {
+        bodies = { a = { I = 1.2, k = 3, Rd = 0.1, Re = 0.4 }, b = { I = 1.4, C = 0.3, k = 2.9, Rd = 0.4, spring = function(x) return 1.3 * x ^ 3 end },
+            c = { I = 1.8, C = 0.2, Rd = 0.2, Re = 0.6, walls = { upper = 0.2, stiffness = 12.6 } } },
+        links = { ab = { "a", "b", Rd = 0.1, Re = 0.3 }, bc = { "b", "c", k = 4.9, friction = friction.jenkins { stiffness = 6.4, Rd = 0.3 } } } }
+    local function step(to, at) return function(t) return t < at and 0 or to end end
+    local run = rig:simulate { M = { a = step(-0.9, 4), b = function(_, _, v) return v.b > 0 and -0.6 or 0.6 end, c = step(-1.3, 1.5) },
+        belt = { b = 0.6, c = -0.4 }, theta0 = { a = 0.3, c = -0.4 }, velocity0 = { a = -0.4, b = -0.5, c = -0.1 }, t_end = 9 }
+    local last = run.events:filter(function(event) return event.t > 7 end)
+    equal(#last, 2)
+    for i, where in ipairs { "a", "ab" } do
+        equal(last[i].kind .. last[i].where, "stick" .. where)
+        near(last[i].t, 7.81911518249, 1e-9)
+    end
+end)
+
 finish()

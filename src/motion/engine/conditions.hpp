@@ -40,6 +40,7 @@ public:
         forgotten_ = true;
         slides_.renew(now, ceased_);
     }
+    void return_to_surfaces(Now& now) const { slides_.return_to_surfaces(now); }
     /// Announces that the stretch is repeated up to this time, at which a condition passes zero.
     void crosses_at(double t) { crossing_at_ = t; }
 

@@ -409,6 +409,7 @@ bool Engine::arrive(double x, bool whole) {
     if (pace_.bad_time <= now_.t.hi) pace_.bad_time = model::never, mechanics_.forget_failure();
     breaks_.pass(now_.t.hi, problem_.window.end);
     if (length > 0) {
+        conditions_->return_to_surfaces(now_);
         for (Slipping& how : now_.mode.friction) how.leaving = false;
         if (whole) {
             for (Slipping& how : now_.mode.friction) how.blunt = 0;

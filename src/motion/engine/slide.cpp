@@ -580,6 +580,15 @@ std::vector<Slides::Sliding>::iterator Slides::slide_of(const Piecewise& functio
     return std::find_if(sliding_.begin(), sliding_.end(), [&](const Sliding& each) { return each.has(function); });
 }
 
+void Slides::return_to_surfaces(Now& now) const {
+    for (const Sliding& each : sliding_) {
+        if (each.of_place) continue;
+        const Sides sides = both(each, now.here());
+        double work = 0;
+        if (sides.differ()) put_on_surface(each, sides, now, work);
+    }
+}
+
 /// Moves all slides onto the pieces behind a break.
 void Slides::renew(Now& now, std::vector<SlideChange>& changes) {
     for (const Sliding& was : std::vector<Sliding>(sliding_)) {

@@ -63,6 +63,8 @@ public:
     [[nodiscard]] bool just_left(const Piecewise& function, double t) const {
         return left_at_ == t && left_.has(function);
     }
+    /// Takes the error of a stretch out of the velocities that slides hold: another contact may compare with them.
+    void return_to_surfaces(Now& now) const;
     /// Continues slides behind a break, or ends them if they are none there.
     void renew(Now& now, std::vector<SlideChange>& changes);
     /// Starts a slide of a motion that stands exactly on the surface and is about to leave it.
