@@ -174,4 +174,19 @@ test("an impossible gear is refused with a reason", function()
     refused { { "rig:simulate { velocity0 = { a = 1, b = 0.5 }, t_end = 1 }", "velocity0: the rigid link gear keeps a - 10 b", "a = 1, b = 0.5", "by -4" } }
 end)
 
+test("an action on a body throws those that are linked to it rigidly, and friction opposes them all", function()
+    local rig = system { bodies = { a = { I = 2, Rd = 0.1 }, b = { I = 1, Rd = 0.2 } }, links = { ab = { "a", "b", rigid = true } } }
+    for _, method in ipairs { integrator.spectral {}, integrator.dopri5 { tolerance = 1e-12 } } do
+        local thrown = { when = function(t) return t - 0.5 end, act = function(_, _, v) v.a = -2 * v.a end }
+        local run = rig:simulate { velocity0 = { a = 1, b = 1 }, events = { thrown }, t_end = 1, times = { 0.75, 1 }, integrator = method }
+        -- Friction of 0.3 on 3 takes 0.1 per time unit; of twice -2 v and once v remains -v.
+        for i, v in ipairs { -0.95 + 0.025, -0.95 + 0.05 } do
+            near(run.a.velocity[i], v, 1e-11)
+            near(run.b.velocity[i], v, 1e-11)
+            near(run.b.friction[i], 0.2, 1e-15)
+        end
+        near(run:energy().total.error, 0, 1e-11)
+    end
+end)
+
 finish()

@@ -198,15 +198,18 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         // the user's action saw the rounded angles, so the run continues from them
         if (now_.y != before) now_.low.assign(n(), 0);
         now_.keep_rigid_places(problem_.system);
+        const bool moved =
+            !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
+        if (moved) {
+            std::fill(now_.mode.leans.begin(), now_.mode.leans.end(), 0);
+            throw_along();
+        }
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const double work = energy_at(j, now_.y) - energy_at(j, before);
             if (work != 0 || j == 0) recorder_->add_jump(now_.t.hi, j, {.acts = work});
         }
         breaks_.echo(now_.t.hi, 1);
-        const bool moved =
-            !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
-            std::fill(now_.mode.leans.begin(), now_.mode.leans.end(), 0);
             for (std::size_t i = 0; i < n(); ++i) recorder_->head(i, now_.y[n() + i]);
             touch_walls();
             if (!restart_contacts(Because::act)) return false;

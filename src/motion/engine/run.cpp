@@ -436,10 +436,11 @@ bool Engine::sample_controllers() {
     return good;
 }
 
-/// Gives bodies the velocity of those with a prescribed motion to which they are linked rigidly. Friction gives no
-/// impulse: a body that only sticks to one whose velocity jumps slips.
+/// Makes the velocities of rigidly linked bodies agree after a jump. Friction gives no impulse: a body that only sticks
+/// to one whose velocity jumps slips.
 void Engine::throw_along() {
-    if (problem_.hidden == 0) return;
+    const std::vector<char>& rigid = now_.mode.rigid;
+    if (problem_.hidden == 0 && std::count(rigid.begin(), rigid.end(), 0) == std::ssize(rigid)) return;
     Mode sticking = now_.mode;
     for (std::size_t j = 0; j < own_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
     project(now_.side());
