@@ -69,4 +69,20 @@ test("a run that begins later meets the instants that follow, and a relay switch
     end
 end)
 
+test("a relay whose level is the place of a wall is switched by every impact there", function()
+    for start = 0, 40 do -- at other times, other roundings of the impact
+        local run = system { I = 1, k = 0.7, Rd = 0.05, walls = { upper = 0.3, restitution = 0.8 } }
+            :simulate { M = excitation.relay { on = -0.2, off = 0.3, amplitude = 1, of = "theta" }, theta0 = -0.1, t_start = start / 7, t_end = start / 7 + 12 }
+        local met = 0
+        for i, event in ipairs(run.events) do
+            if event.kind == "impact" then
+                met = met + 1
+                equal(run.events[i - 1].kind, "switch")
+                equal(run.events[i - 1].t, event.t)
+            end
+        end
+        assert(met > 2)
+    end
+end)
+
 finish()

@@ -145,6 +145,7 @@ private:
         double once = model::never, all = model::never;
     };
     [[nodiscard]] std::optional<Bounces> next_bounces(std::size_t joint, int wall, double speed);
+    void switch_at_wall();
     bool hit(std::size_t joint, int wall);
     void lean(std::size_t joint, int wall);
     [[nodiscard]] bool is_driven(std::size_t joint, const Impulses::Thrown& thrown) const;

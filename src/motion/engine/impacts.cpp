@@ -45,11 +45,25 @@ std::optional<Engine::Bounces> Engine::next_bounces(std::size_t joint, int wall,
     return Bounces{once, kept < 1 ? once / (1 - kept) : model::never};
 }
 
+/// Switches relays whose level is the angle at which a wall has just been met, whatever the rounding of both.
+void Engine::switch_at_wall() {
+    for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
+        Signal& load = mechanics_.loads()[j];
+        for (std::size_t r = 0; r < load.relays(); ++r) {
+            const bool of_angle = load.switching(r).place.value_or(n()) < n();
+            if (!of_angle || load.until_switch(r, now_.here()) > 0) continue;
+            load.toggle(r);
+            report_event(EventKind::switched, j);
+        }
+    }
+}
+
 bool Engine::hit(std::size_t joint, int wall) {
     const Joint& own = problem_.system.joints[joint];
     const double place = own.walls->at(wall), e = own.walls->restitution;
     const bool stayed = contacts_.of[joint].leaves_wall;
     now_.put_child(own, own.first(), own.of.front().by, place);
+    switch_at_wall();
     walls_.struck(joint, place);
     const double before = std::max(0.0, wall * mechanics_.velocity(joint, now_.y));
     contacts_.of[joint].leaves_wall = true;
