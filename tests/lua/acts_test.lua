@@ -222,4 +222,13 @@ test("an event whose function steps is told once at each step, by each integrato
     end
 end)
 
+test("endless bounces by an action are called so also late, where M has the rounding of the time", function()
+    for _, start in ipairs { 0, 1000, 1e5 } do
+        local bounce = { when = function(_, theta) return theta end, direction = "down", act = function(_, theta, v) return theta, -0.6 * v end }
+        local run = system { I = 1, k = 0 }
+            :simulate { M = function(t) return -1 - 0.5 * math.sin(2.2 * t) end, theta0 = 1, t_start = start, t_end = start + 20, events = { bounce } }
+        has(run.outcome, "bounces made by act never come to rest")
+    end
+end)
+
 finish()

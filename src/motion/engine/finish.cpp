@@ -121,7 +121,9 @@ void Engine::explain_end() {
     for (const Source& source : sources) {
         const Roughness look = roughness(source.value, {from, from + 2 * length, from + 5 * length}, length);
         const double part = look.most / (look.size + source.beside);
-        if (!look.is_noise() || !(part > worst)) continue;
+        const double slope = std::fabs(source.value(from + length) - source.value(from)) / length;
+        const bool is_rounding = look.most <= 16 * rounding * std::fabs(from) * slope;  // of the time
+        if (!look.is_noise() || is_rounding || !(part > worst)) continue;
         worst = part;
         result_.rough = Rough{source.name, look.most, part};
         outcome_ = Outcome::unresolved;
