@@ -231,4 +231,15 @@ test("a condition on the motion is located and slid along where a condition on t
     end), theta, 1e-9)
 end)
 
+test("a load that switches at a speed at which a belt passes it late is decided", function()
+    -- The body sticks to the belt, whose speed passes the level at pi/18 after each period.
+    for _, start in ipairs { 0, 2 * math.pi * 5, 2 * math.pi * 50 } do
+        for level = 0.25, 0.35, 0.01 do
+            local run = system { I = 1, k = 0.1, Rd = 5 }:simulate { belt = function(t) return 0.2 + 0.6 * math.sin(3 * t) end, velocity0 = 0.2,
+                M = function(_, _, v) return v > level and -0.3 or 0.3 end, t_start = start, t_end = start + 2 }
+            equal(run.t_end, start + 2)
+        end
+    end
+end)
+
 finish()

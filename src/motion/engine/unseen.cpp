@@ -75,10 +75,14 @@ bool Unseen::is_shown(double allowed, double part) {
            enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
-/// Returns the rounding error, since discs without radius grow only by the roundings of each step.
+/// Discs grow by the roundings of each step.
 double Unseen::rounded(std::optional<std::size_t> condition) {
     walk_.begin(*formula_, piece_, false);
-    for (const Input& input : inputs_) walk_.set(input.place, {cheb::value(input.series, 0), 0}, Interval{});
+    // What decides a condition may be a small difference, in which the rounding of the arguments remains.
+    const double of_arguments = condition ? model::bounds::roundings_of_a_step * rounding : 0;
+    for (const Input& input : inputs_) {
+        walk_.set(input.place, {cheb::value(input.series, 0), of_arguments * cheb::size(input.series)}, Interval{});
+    }
     return walk_.run(condition).disc.r / model::bounds::roundings_of_a_step;
 }
 
