@@ -85,12 +85,12 @@ struct Ending {
     std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};
     /// whether some margin at the start exceeds the rounding there, but not that over the stretch
     bool blurred = false;
-    /// Returns the latest point for user events and conditions. Those very close to a standstill or release count as
-    /// later.
+    /// Returns the latest point for user events and conditions. Those very close to a standstill, release or wall
+    /// count as later: a value that is zero at a wall is not passed.
     double before() const {
-        constexpr double beside_standstill = 1e-12;
-        const bool at_standstill = by == By::slip || by == By::release || by == By::stays;
-        return x - (at_standstill ? beside_standstill : 0);
+        constexpr double beside_turn = 1e-12;
+        const bool turns = by == By::slip || by == By::release || by == By::stays || by == By::wall;
+        return x - (turns ? beside_turn : 0);
     }
 };
 
