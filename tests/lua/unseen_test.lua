@@ -78,7 +78,7 @@ test("a narrow smooth pulse is found in every kind of function", function()
     end
 end)
 
-test("a sampled part of a delayed excitation or a relay is reported as the gap, a function sampled at instants is not", function()
+test("a sampled part of a delayed excitation or a relay, or an unread event, is the gap; what is sampled at instants is none", function()
     local function gap(M) return system(free):simulate { M = M, velocity0 = 1, t_end = 1, dt = .5 }.gap end
     local function narrow(t, theta, v) return exp(-((theta - .5) / 1e-6) ^ 2) end
     assert(gap(excitation.delayed(function(t, theta, v) return theta > .5 and theta < .6 and 1 or 0 end, { by = .01 })) > 0)
@@ -87,6 +87,10 @@ test("a sampled part of a delayed excitation or a relay is reported as the gap, 
     equal(gap(excitation.relay { on = .5, off = .4, amplitude = 1, of = "theta" }), nil)
     equal(gap(excitation.sampled(narrow, { every = .1 })), nil)
     equal(gap(excitation.sampled(narrow, { every = .1 }) + function(t) return math.sin(t) end), nil)
+    local function late(t) return t - 2 end
+    local function watched(when) return system(free):simulate { velocity0 = 1, t_end = 1, events = { { when = when } } }.gap end
+    equal(watched(late), nil)
+    assert(watched(unread(late)) > 0)
 end)
 
 test("a narrow pulse over the past motion is found", function()
