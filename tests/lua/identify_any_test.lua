@@ -155,6 +155,12 @@ test("starts and offsets of bodies are given by name, a run of several bodies is
     for _, Rd in ipairs { 0, 0.05 } do
         equal(identify { data = r, system = decay:with { Rd = Rd, Re = Rd }, free = { "Re" } }.bounds.Re[1], Rd)
     end
+    -- Rd moves a sliding block by Rd t^2/2: bounds are two standard errors of that line at least.
+    local slide = system { I = 1, k = 0, Rd = 0.1 }
+    r = slide:simulate { velocity0 = 1, t_end = 5, dt = 0.01 }
+    fit = identify { data = { t = r.t, theta = noisy(r, 2, 100) }, system = slide, free = { "Rd" }, theta0 = 0, velocity0 = 1, offset = 0 }
+    local least = 2 * fit.noise / (r.t ^ 4):sum() ^ 0.5 * 2
+    assert(fit.bounds.Rd[2] - fit.Rd > least and fit.bounds.Rd[2] - fit.Rd < 4 * least, fit)
 end)
 
 test("Re follows Rd if both are one number, also in each direction of an asymmetric law", function()
