@@ -47,7 +47,9 @@ TEST_CASE("a million points over time are reduced to four for each column of pix
     y[123'456] = 5;  // a single spike
     y[777'777] = -4;
     curve.y = Numbers::own(y);
-    const auto kept = thinned(curve, paper_for(curve, {600, 400}));
+    // The first 300 are left of the paper.
+    const Paper paper{{Scale({300, 1000}, false), Scale({-1, 1}, false)}, {600, 400}};
+    const auto kept = thinned(curve, paper);
     CHECK(kept.size() <= 4U * 602);
     CHECK(std::is_sorted(kept.begin(), kept.end()));
     CHECK(std::count(kept.begin(), kept.end(), 123'456U) == 1);
@@ -57,7 +59,8 @@ TEST_CASE("a million points over time are reduced to four for each column of pix
     // The highest and the lowest value of each column of pixels are those of all its points.
     std::vector<double> high(601, -1e9), low(601, 1e9), kept_high(601, -1e9), kept_low(601, 1e9);
     const auto note = [&](std::size_t i, std::vector<double>& highs, std::vector<double>& lows) {
-        const auto column = static_cast<std::size_t>(curve.x.values[i] / 1000 * 600);
+        if (curve.x.values[i] < 300) return;
+        const auto column = static_cast<std::size_t>((curve.x.values[i] - 300) / 700 * 600);
         highs[column] = std::max(highs[column], y[i]);
         lows[column] = std::min(lows[column], y[i]);
     };
