@@ -212,6 +212,8 @@ test("the comment block repeats a scripted M with its local and global variables
     global_gain = 4
     check_repeats(first, "globals")
     check_repeats(nd:simulate { M = 2 * excitation.scripted(M, { breaks = { 0.5 }, period = 1 }):delay(0.1) + 1, t_end = 2, dt = 0.1 }, "terms")
+    local pulse = unread(function(t) return t >= 0.537 and t < 0.5371 and 300 or 0 end) -- missed without its breaks
+    check_repeats(nd:simulate { M = excitation.scripted(pulse, { breaks = { 0.537, 0.5371 } }), t_end = 2, dt = 0.1 }, "breaks")
     check_repeats(nd:simulate { M = math.sin, t_end = 2, dt = 0.1 }, "a function of Lua")
     check_repeats(nd:simulate { M = load("return 2 * ..."), t_end = 2, dt = 0.1 }, "a chunk")
     local function countdown(t) return t > 1 and 1 + countdown(t - 1) or t end
