@@ -176,7 +176,7 @@ class Notices(AtHome):
         equal(terminal.enter(":edit 1"), "x = 5")
         equal(terminal.enter(":history 1").split(), ["3", "x", "=", "5"])
         equal(terminal.enter("x"), "5")
-        contained("from 1 to", terminal.enter(":edit 17"))
+        contained("from 1 to 4", terminal.enter(":edit 5"))
 
     def test_a_local_variable_that_is_used_is_not(self):
         terminal = self.terminal()
