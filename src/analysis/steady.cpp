@@ -82,7 +82,8 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 namespace {
 
-/// Returns whether the motions are equal or mirror images. `free`: nothing restores the angle, so all rests are one.
+/// Returns whether the motions are equal; a mirror image is another one. `free`: nothing restores the angle, so all
+/// rests are one.
 bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size, bool free) {
     if (a.stands() && b.stands()) {
         if (free) return true;
@@ -91,8 +92,7 @@ bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size, bool f
     }
     if (a.status != b.status) return false;
     if (a.status != SteadyStatus::steady) return true;
-    const double apart =
-        std::fabs(std::fabs(a.high) - std::fabs(b.high)) + std::fabs(std::fabs(a.low) - std::fabs(b.low));
+    const double apart = std::fabs(a.high - b.high) + std::fabs(a.low - b.low);
     return std::fabs(a.amplitude - b.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
 }
 
@@ -162,8 +162,7 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
         if (a.stands() && b.stands()) return true;
         if (a.status != b.status) return false;
         const auto moves_alike = [&](const BodyMotion& x, const BodyMotion& y) {
-            return std::fabs((x.high - x.low) - (y.high - y.low)) <= 1e-4 * size &&
-                   std::fabs(farthest(x) - farthest(y)) <= 1e-4 * size &&
+            return std::fabs(x.high - y.high) <= 1e-4 * size && std::fabs(x.low - y.low) <= 1e-4 * size &&
                    std::fabs(x.turned - y.turned) <= 1e-4 * std::fabs(x.turned);
         };
         return a.status != SteadyStatus::steady ||

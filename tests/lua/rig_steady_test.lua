@@ -403,6 +403,12 @@ test("other motions are listed once, whatever their phase, and bodies that creep
     equal(s.periods, 3)
     equal(#s.others, 1)
     equal(s.others[1].periods, 1)
+    -- The mirror image of a motion in one of two wells is in the other well.
+    local well, M = { I = 1, k = 0, C = 0.3, spring = function(x) return x ^ 3 - x end }, excitation.harmonic { amplitude = 0.1, omega = 1.2 }
+    for _, s in ipairs { system(well):steady { M = M, theta0 = 1 }, system { bodies = { a = well } }:steady { M = { a = M }, theta0 = { a = 1 } } } do
+        equal(s.unique, false)
+        equal(#s.others, 1)
+    end
     local rig = system { bodies = { a = { I = 1, k = 2, Rd = 0.3 }, b = { I = 2, k = 1, C = 0.1 } }, links = { c = { "a", "b", Rd = 0.5 } } }
     s = rig:steady { M = { b = excitation.harmonic { amplitude = 0.2, omega = 1 } } }
     equal(s.status, "adheres")
