@@ -103,6 +103,8 @@ test("errors in a rate, an event or a sampled function name it, and the rows are
     fails({ t_end = 1, dt = 0.1, velocity0 = 1, events = { { when = function(t) return t > 0.5 and {} or 1 end } } }, "events%[1%]%.when returned a table")
     fails({ t_end = 1, dt = 0.1, velocity0 = 1, events = { { when = function(t) return t - 0.5 end, act = function() return 1 end } } },
         "events%[1%]%.act returned 1 and nil at t = 0%.5; it must return theta and velocity")
+    local states, act = { e = { rate = function() return 0 end } }, function(t, theta, velocity, z) z.e = 1 / 0 end
+    fails({ t_end = 1, states = states, events = { { when = function(t) return t - 0.5 end, act = act } } }, "act gave a state a value that is not a finite number at t = 0%.5")
 end)
 
 test("each mistake is one sentence with the name of the option", function()
