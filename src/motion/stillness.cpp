@@ -86,7 +86,9 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
     constexpr double parts = 8, halvings = 50;
     std::vector<model::Event> turns;
     if (!run.course) return turns;
-    const double longest = run.course->system().natural_period();
+    // No run lasts 1e9 natural periods: the inertia is arbitrary where the motion is prescribed, and so is its period.
+    const double natural = run.course->system().natural_period();
+    const double longest = natural > 1e-9 * (run.t_stop - run.t_start) ? natural : model::never;
     double moved_at = run.t_start, velocity = run.initial.velocity;  // last time at which it was seen moving
     const auto look = [&](double to) {
         const auto now = run.at(to);
@@ -108,7 +110,7 @@ std::vector<model::Event> turns_on_belt(const Run& run) {
         moved_at = to, velocity = now->velocity;
     };
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
-        constexpr double most = 1e4;  // a body with prescribed motion has an arbitrary inertia, so no meaningful period
+        constexpr double most = 1e4;  // natural periods between two rows or events that are searched closely
         const double width = times[i + 1] - times[i];
         const double steps = parts * std::ceil(std::clamp(width / longest, 1.0, most));
         const auto count = width > 0 ? static_cast<std::size_t>(steps) : 0;
