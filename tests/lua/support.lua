@@ -406,6 +406,31 @@ function support.output(code, options)
     return pipe:read "a"
 end
 
+--- What the program prints when it runs each of these codes in turn, by code. One process does it: under the sanitizers a
+-- start takes longer than most codes.
+function support.outputs(codes)
+    local list = {}
+    for i, code in ipairs(codes) do list[i] = ("%q"):format(code) end
+    local printed = support.output("for _, code in ipairs{ " .. table.concat(list, ", ")
+        .. " } do print('\\0') local ok, problem = pcall(assert(load(code))) if not ok then print(problem) end end")
+    local all, i = {}, 0
+    for text in printed:gmatch "%z\n([^\0]*)" do
+        i = i + 1
+        all[codes[i]] = text
+    end
+    support.equal(i, #codes, "number of outputs")
+    return all
+end
+
+--- What the program prints when it runs the code that each row begins with has the pieces behind it in it.
+function support.prints(rows)
+    local codes = {}
+    for i, row in ipairs(rows) do codes[i] = row[1] end
+    local said = support.outputs(codes)
+    for _, row in ipairs(rows) do support.has(said[row[1]], table.unpack(row, 2)) end
+    return said
+end
+
 --- The angles of a run with noise, which is the same for the same seed.
 function support.noisy(run, seed, std)
     return run.theta + vector.normal { n = #run, seed = seed, std = std }
