@@ -61,6 +61,7 @@ class Prompt:
     def __init__(self, command, folder):
         self.screen = pexpect.spawn("sh", ["-c", command], cwd=folder, env=environment(folder), encoding="utf-8",
                                     timeout=TIMEOUT, dimensions=(50, 100))
+        self.screen.delaybeforesend = None  # the prompt appears when the terminal is ready: waiting was most of the test
         self.screen.expect(r"(^|\n)> $")
         self.greeting = self.screen.before.replace("\r", "") + "\n"
 
