@@ -371,8 +371,8 @@ std::optional<Map::Derivative> Returns::derivative(const VectorXd& at, const std
         const auto differ = [](const Slope& s) { return !s.alike && s.bend > little; };
         double step = h;
         std::optional<Slope> near = slope(step), far = order == 2 ? near : slope(2 * step);
-        // The slopes of a smooth map hardly depend on the step. A kink or a window that only one side reaches is no
-        // event, but changes them.
+        // Where the map is smooth, its slope hardly depends on the step. A kink of the map that only one of the two
+        // sides reaches changes the slope, although both sides have the same events.
         constexpr double close = 1e-5, noise = 1e-12;
         const auto disagree = [&] {
             const VectorXd apart = near->value - far->value;

@@ -361,7 +361,7 @@ std::string printed_sign(const lua::SyntaxMessage& message, std::string_view sta
     return "; names and signs of Lua are in plain letters: theta, pi, omega";
 }
 
-/// How a global function is called, with braces for options or with parentheses; "" if there is none.
+/// The remark that a global function takes its options in braces, or needs parentheses; "" if no such function exists.
 std::string call_of_global(lua_State* L, std::string_view name) {
     const bool is_function = lua::push_global(L, name) == LUA_TFUNCTION;
     const lua::Documented found = lua::documented(L, -1);

@@ -16,7 +16,7 @@ namespace {
 
 // Registry key of the table that maps functions and module tables to their documentation.
 const char documentation_key = 0;
-// Key, within a metatable, of its Class.
+// The address of this variable is the key under which a metatable stores its Class.
 const char class_key = 0;
 
 void push_documentation(lua_State* L) {

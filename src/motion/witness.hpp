@@ -55,7 +55,7 @@ public:
 
     /// Repeats the first evaluation at the end of the run.
     void repeat_kept();
-    /// Repeats the first evaluation, or the latest one kept. Returns false if the answer differs.
+    /// Repeats the first kept evaluation, or if `last` the latest one. Returns false if the answer differs.
     bool repeat_end(bool last);
 
 private:

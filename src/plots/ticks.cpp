@@ -99,8 +99,8 @@ std::vector<std::string> in_powers(const std::vector<double>& at, int finest) {
     return text;
 }
 
-/// The exponent of the last digit needed to show all numbers, which a user may have chosen arbitrarily. Limited to four
-/// digits of the axis's length, so pi/2 is 1.5708 on an axis of length 5.
+/// The exponent of the last digit needed to show all ticks. At most four digits after the first of the axis's length
+/// are shown, since a user's own ticks may need any number of digits: pi/2 is 1.5708 on an axis of length 5.
 int finest_digit(const std::vector<double>& at, double length) {
     const int least = exponent_of(length) - 4;
     for (int digit = exponent_of(length) + 1; digit > least; --digit) {

@@ -295,9 +295,10 @@ private:
     Mode mode_;
     std::optional<Frame> frame_;
     std::vector<double> belts_, y_, loads_, torques_;
-    std::vector<std::size_t> free_;                           ///< indices of the independent states
-    std::vector<std::pair<std::size_t, std::size_t>> bends_;  ///< indices of the other states, and their joints
-    double slowest_ = model::never;
+    std::vector<std::size_t> free_;  ///< indices of the independent states
+    /// The deflections that follow the angle of a joint: their indices in y, and the joint.
+    std::vector<std::pair<std::size_t, std::size_t>> bends_;
+    double slowest_ = model::never;  ///< least speed of slip, also of bristles on a belt
 };
 
 }  // namespace

@@ -190,7 +190,7 @@ const WalkedCurve::Jet& WalkedCurve::further_jet() {
     return asked_.jet;
 }
 
-/// Computes the derivatives of the rarer parts from order `from` to `to`.
+/// Computes the derivatives, from order `from` to `to`, of all parts except sines and the free motion.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
     const PartValues& asked = *asked_.values;
     Jet more{};
