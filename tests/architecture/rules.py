@@ -9,7 +9,9 @@ import re
 import sys
 
 ROOT = sys.argv[1]
-MOST_ONE_USER_HEADERS = 18
+MOST_ONE_USER_HEADERS = 14
+# Each header of these is one row of a list: a new law, term or integrator needs no second user.
+LISTS = {"src/motion/integrators.hpp", "src/model/terms.hpp", "src/api/bind_friction.cpp"}
 
 # The floors of the house, from the top: a room includes itself and rooms below it. Rooms within a room (motion/rk4) stand
 # on the same floor as the room around them.
@@ -137,7 +139,7 @@ def headers_have_two_users():
     for path in files((".hpp",)):
         # Its own source does not count; a test that looks into it does.
         other = {user for user in users.get(path, ()) if user != path[:-4] + ".cpp"}
-        if path.startswith("src/") and len(other) < 2:
+        if path.startswith("src/") and len(other) < 2 and not other & LISTS:
             lonely.append(path)
     if len(lonely) > MOST_ONE_USER_HEADERS:
         complain("src", 1, f"{len(lonely)} headers have fewer than two users, {MOST_ONE_USER_HEADERS} are the limit: "
