@@ -426,18 +426,15 @@ const lua::Class data_class = {
      "first row. It cannot be changed.",
      "d = data{ r = { 0.5, 1 }, A = { 1.3, 4 } }\nprint(d.r, d[2].A)  --> vector{ 0.5, 1 }\t4.0"},
     data_members,
+    lua::add_class<DataHandle>,
     lua::guarded<data_other_key>,
     data_card};
 
 const lua::Class data_module = {"data",
                                 {"data{ ... } -> d", "Makes tables of named columns, and reads them from files.",
                                  "print(#data{ r = { 0.5, 1 } })  --> 2"},
-                                data_module_members};
-
-void register_data(lua_State* L) {
-    lua::add_class<DataHandle>(L, data_class);
-    lua::add_module(L, data_module);
-}
+                                data_module_members,
+                                lua::add_module};
 
 }  // namespace dinal::api
 

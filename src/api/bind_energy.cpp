@@ -266,6 +266,7 @@ const lua::Class energy_class = {
                   "    links = { clutch = { \"motor\", \"load\", Rd = 2 } } }\n"
                   "print(rig:simulate{ velocity0 = { motor = 3 }, t_end = 4 }:energy().clutch.dry)  --> 3.375"},
     energy_members,
+    lua::add_class<EnergyHandle>,
     lua::guarded<no_part_of_energy>,
     energy_card,
     lua::guarded<part_of_energy>};
@@ -327,10 +328,6 @@ std::string story_of_simulated(lua_State* L, const RunHandle& run) {
                               .method = run->origin->integrator,
                               .joint = run->joint},
                              energies);
-}
-
-void register_energy(lua_State* L) {
-    lua::add_class<EnergyHandle>(L, energy_class);
 }
 
 }  // namespace dinal::api

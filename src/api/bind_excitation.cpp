@@ -469,14 +469,10 @@ const lua::Class excitation_class{
      "A torque M(t), or M(t, theta, velocity) with feedback. It cannot be changed; arithmetic makes new ones.",
      "e = 2 * excitation.step{ at = 1 }\nprint(e(0), e(1))  --> 0.0\t2.0"},
     excitation_members,
+    lua::add_class<model::Excitation>,
     nullptr,
     excitation_card,
 };
-
-void register_excitation(lua_State* L) {
-    lua::add_class<model::Excitation>(L, excitation_class);
-    lua::add_module(L, excitation_module);
-}
 
 // The options of excitation.sampled, relay and delayed.
 
@@ -744,6 +740,7 @@ const lua::Class excitation_module{
      "M = excitation.harmonic{ frequency = 1 } + 0.5 * excitation.pulse{ at = 1.5, width = 0.2 }\n"
      "print(M:next_break(0))  --> 1.5"},
     excitation_module_members,
+    lua::add_module,
 };
 
 // excitation.sampled, excitation.relay, excitation.delayed: terms of M with a memory.

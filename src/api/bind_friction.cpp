@@ -174,16 +174,13 @@ const lua::Class friction_module = {
      "the speed, and the breakaway torque.",
      "sys = system{ I = 1, k = 4, friction = friction.stribeck{ Rd = 0.3, Re = 0.6, speed = 0.1 } }\n"
      "print(sys.Re)  --> 0.6"},
-    friction_module_members};
+    friction_module_members,
+    lua::add_module};
 
 const lua::Class friction_class = {"friction",
                                    {"friction.NAME{ ... } -> law", "A law of friction. It cannot be changed.",
                                     "print(friction.coulomb{ Rd = 0.3 }.Re)  --> 0.3"},
-                                   friction_members};
-
-void register_friction(lua_State* L) {
-    lua::add_class<model::Friction>(L, friction_class);
-    lua::add_module(L, friction_module);
-}
+                                   friction_members,
+                                   lua::add_class<model::Friction>};
 
 }  // namespace dinal::api

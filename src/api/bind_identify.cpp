@@ -1423,7 +1423,8 @@ const lua::Class identify_functions = {
      "guess = rig:with{ bodies = { load = { Rd = 0.5 } }, links = { shaft = { k = 5 } } }\n"
      "fit = identify{ data = run, system = guess, free = { \"load.Rd\", \"shaft.k\" }, measured = { \"load.theta\" } }\n"
      "print(string.format(\"%.4f %.4f\", fit[\"load.Rd\"], fit[\"shaft.k\"]))  --> 0.4000 6.0000"},
-    identify_members};
+    identify_members,
+    lua::add_functions};
 
 const lua::Class fit_class = {
     "fit",
@@ -1433,12 +1434,8 @@ const lua::Class fit_class = {
      "run = nondimensional{ friction_ratio = 0.05 }:simulate{ theta0 = 1, t_end = 6, dt = 0.05 }\n"
      "print(string.format(\"%.4f\", identify{ data = run }.Rd_over_k))  --> 0.0500"},
     fit_members,
+    lua::add_class<FitHandle>,
     lua::guarded<fit_value>,
     fit_card};
-
-void register_identify(lua_State* L) {
-    lua::add_class<FitHandle>(L, fit_class);
-    lua::add_functions(L, identify_functions);
-}
 
 }  // namespace dinal::api

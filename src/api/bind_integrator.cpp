@@ -100,19 +100,16 @@ const lua::Class integrator_module = {
      "sys = nondimensional{ zeta = 0.1 }\n"
      "run = sys:simulate{ theta0 = 1, t_end = 2, dt = 0.5, integrator = integrator.rk4{ h = 0.01 } }\n"
      "print(run.integrator)  --> integrator.rk4{ h = 0.01 }"},
-    integrator_module_members};
+    integrator_module_members,
+    lua::add_module};
 
 const lua::Class integrator_class = {"integrator",
                                      {"integrator.rk4{ h = 0.001 } -> integrator",
                                       "A method with its options as fields, for `integrator =` in sys:simulate{...}.",
                                       "print(integrator.rk4{ h = 0.001 }.h)  --> 0.001"},
                                      integrator_members,
+                                     lua::add_class<motion::Integrator>,
                                      lua::guarded<option_by_name>,
                                      integrator_card};
-
-void register_integrator(lua_State* L) {
-    lua::add_class<motion::Integrator>(L, integrator_class);
-    lua::add_module(L, integrator_module);
-}
 
 }  // namespace dinal::api

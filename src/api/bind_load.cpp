@@ -279,17 +279,18 @@ constexpr lua::Member load_members[] = {
       {&load_call}}},
 };
 
+void add_load(lua_State* L, const lua::Class& functions) {
+    lua_getglobal(L, "load");
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &original_key);
+    lua::add_functions(L, functions);
+}
+
 }  // namespace
 
 const lua::Class load_functions = {
     "load",
     {"load(file) -> run or data", "Reads files.", "print(select(2, pcall(load, \"missing.csv\")) ~= nil)  --> true"},
-    load_members};
-
-void register_load(lua_State* L) {
-    lua_getglobal(L, "load");
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &original_key);
-    lua::add_functions(L, load_functions);
-}
+    load_members,
+    add_load};
 
 }  // namespace dinal::api

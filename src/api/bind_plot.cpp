@@ -472,7 +472,8 @@ const lua::Class plot_functions = {
     "plot",
     {"plot{ { x, y }, ... }", "Draws vectors; run:plot and run:phase_plot draw runs.",
      "t = vector.linspace(0, 1, 50)\nprint(plot{ { t, (6*t):sin() }, show = false } ~= nil)  --> true"},
-    plot_module_members};
+    plot_module_members,
+    lua::add_functions};
 
 const lua::Class picture_class = {
     "picture",
@@ -482,12 +483,8 @@ const lua::Class picture_class = {
      "run = nondimensional{}:simulate{ theta0 = 1, t_end = 2, dt = 0.01 }\n"
      "both = plot{ run:plot{ show = false }, run:phase_plot{ show = false }, show = false }\n"
      "print(#tostring(both) > 1000)  --> true"},
-    picture_members};
-
-void register_plot(lua_State* L) {
-    lua::add_class<Picture>(L, picture_class);
-    lua::add_functions(L, plot_functions);
-}
+    picture_members,
+    lua::add_class<Picture>};
 
 namespace {
 

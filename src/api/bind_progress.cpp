@@ -116,16 +116,17 @@ constexpr lua::Member progress_module_members[] = {
       "print(#peaks)  --> 3"}},
 };
 
+void add_progress(lua_State* L, const lua::Class& functions) {
+    lua::add_class<Loop>(L, loop_class);
+    lua::add_functions(L, functions);
+}
+
 }  // namespace
 
 const lua::Class progress_functions = {
     "progress",
     {"for i in progress(n, label) do", "Loops that show their progress.", "for i in progress(3, \"sweep\") do end"},
-    progress_module_members};
-
-void register_progress(lua_State* L) {
-    lua::add_class<Loop>(L, loop_class);
-    lua::add_functions(L, progress_functions);
-}
+    progress_module_members,
+    add_progress};
 
 }  // namespace dinal::api

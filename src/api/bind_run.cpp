@@ -748,6 +748,7 @@ const lua::Class run_class = {
      "rig = system{ bodies = { a = { I = 1, k = 4 }, b = { I = 1 } }, links = { rod = { \"a\", \"b\", k = 2 } } }\n"
      "run = rig:simulate{ theta0 = { a = 1 }, t_end = 3 }\nprint(run.a.theta[1], run.rod.torque[1])  --> 1.0\t-2.0"},
     run_members,
+    lua::add_class<RunHandle>,
     other_column,
     run_card,
     body_or_link};
@@ -771,10 +772,6 @@ void push_run(lua_State* L, RunHandle run) {
     const std::size_t bytes = run->result.rows.table().own_bytes();
     lua::push<RunHandle>(L, std::move(run));
     lua::note_external_memory(L, bytes);
-}
-
-void register_run(lua_State* L) {
-    lua::add_class<RunHandle>(L, run_class);
 }
 
 // run:at(t), and the columns of a run's own states.

@@ -124,17 +124,14 @@ const lua::Class spring_module = {
      "also possible there.",
      "sys = system{ I = 1, k = 1, spring = spring.polynomial{ [3] = 0.5 } }\n"
      "print(sys.spring)  --> spring.polynomial{ [3] = 0.5 }"},
-    spring_module_members};
+    spring_module_members,
+    lua::add_module};
 
 const lua::Class spring_class = {
     "spring",
     {"spring.NAME{ ... } -> spring", "A spring. It cannot be changed.",
      "print(system{ I = 1, k = 1, spring = function(theta) return theta^3 end }.spring:torque(2))  --> 8.0"},
-    spring_members};
-
-void register_spring(lua_State* L) {
-    lua::add_class<model::Spring>(L, spring_class);
-    lua::add_module(L, spring_module);
-}
+    spring_members,
+    lua::add_class<model::Spring>};
 
 }  // namespace dinal::api

@@ -363,12 +363,9 @@ const lua::Class steady_class = {
      "several bodies s.load is the motion of the body `load`.",
      "s = nondimensional{}:steady{}\nprint(s.status)  --> rest"},
     steady_members,
+    lua::add_class<SteadyHandle>,
     body_of_steady,
     steady_card};
-
-void register_steady(lua_State* L) {
-    lua::add_class<SteadyHandle>(L, steady_class);
-}
 
 // sys:steady{ ... } and run:steady{ ... }, and the run of the motion found.
 

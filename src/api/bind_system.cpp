@@ -336,7 +336,8 @@ const lua::Class system_functions = {"system",
                                      {"system{ I, k, ... } or nondimensional{ ... } -> system",
                                       "Makes a system, in your own units or in the report's nondimensional form.",
                                       "print(system{ I = 1, k = 4 }.omega0)  --> 2.0"},
-                                     system_module_members};
+                                     system_module_members,
+                                     lua::add_functions};
 
 namespace {
 
@@ -420,14 +421,10 @@ const lua::Class system_class = {
      "rig = system{ bodies = { motor = { I = 1 }, load = { I = 3, k = 3 } }, links = { shaft = { \"motor\", \"load\", k = 9 } } }\n"
      "print(rig.load.omega0, rig.shaft.I)  --> 1.0\t0.75"},
     system_members,
+    lua::add_class<SystemHandle>,
     unknown_field,
     system_card,
     field_of_system};
-
-void register_system(lua_State* L) {
-    lua::add_class<SystemHandle>(L, system_class);
-    lua::add_functions(L, system_functions);
-}
 
 std::optional<model::Friction> asked_law(lua_State* L, const lua::Options& options,
                                          std::initializer_list<const char*> instead_of, bool may_have_state) {

@@ -510,10 +510,7 @@ const lua::Class theory_module = {
      "sys:friction_ratio(M0).",
      "r = vector.linspace(0.5, 2, 4)\n"
      "print(theory.magnification{ r = r, zeta = 0.1 })  --> vector{ 1.32164, 5, 0.77791, 0.330409 }"},
-    theory_module_members};
-
-void register_theory(lua_State* L) {
-    lua::add_module(L, theory_module);
-}
+    theory_module_members,
+    lua::add_module};
 
 }  // namespace dinal::api

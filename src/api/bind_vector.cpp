@@ -586,14 +586,10 @@ const lua::Class vector_class{
      "arithmetic and mathematics act on all elements.",
      "v = vector{ 1, 2, 3 }\nprint(v[1], #v, 2 * v)  --> 1.0\t3\tvector{ 2, 4, 6 }"},
     vectors::vector_members,
+    lua::add_class<lua::Vector>,
     lua::guarded<vectors::element>,
     vector_card,
 };
-
-void register_vector(lua_State* L) {
-    lua::add_class<lua::Vector>(L, vector_class);
-    lua::add_module(L, vector_module);
-}
 
 namespace {
 
@@ -754,6 +750,7 @@ const lua::Class vector_module{
     "vector",
     {"vector{ ... } -> vector", "Makes vectors.", "print(vector{ 1, 2, 3 }:sum())  --> 6.0"},
     vector_module_members,
+    lua::add_module,
 };
 
 }  // namespace dinal::api

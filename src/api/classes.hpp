@@ -1,26 +1,10 @@
-// The classes and modules of this room: one registration function and one or two descriptions for each file.
+// The classes and modules of this room. A new one is a file bind_*.cpp, its declaration and its row here, and its
+// tests.
 #pragma once
 
 #include "lua/bind.hpp"
 
 namespace dinal::api {
-
-/// One for each bind_*.cpp; called with the table `dinal` on the top of the stack, which stays.
-void register_system(lua_State* L);
-void register_friction(lua_State* L);
-void register_spring(lua_State* L);
-void register_excitation(lua_State* L);
-void register_integrator(lua_State* L);
-void register_run(lua_State* L);
-void register_energy(lua_State* L);
-void register_load(lua_State* L);
-void register_theory(lua_State* L);
-void register_vector(lua_State* L);
-void register_data(lua_State* L);
-void register_steady(lua_State* L);
-void register_identify(lua_State* L);
-void register_progress(lua_State* L);
-void register_plot(lua_State* L);
 
 // Defined in the bind_*.cpp of that name.
 extern const lua::Class system_functions;    // system, nondimensional
@@ -47,5 +31,33 @@ extern const lua::Class data_class;          // d
 extern const lua::Class plot_functions;      // plot
 extern const lua::Class picture_class;       // result of plot{ ..., show = false }
 extern const lua::Class progress_functions;  // progress
+
+/// In the order of the manual.
+inline constexpr lua::Section sections[] = {
+    {"Systems", "", &system_functions},
+    {"A system", "sys", &system_class},
+    {"Laws of friction", "friction", &friction_module},
+    {"A law of friction", "law", &friction_class},
+    {"Springs", "spring", &spring_module},
+    {"A spring", "spring", &spring_class},
+    {"Excitations", "excitation", &excitation_module},
+    {"An excitation", "e", &excitation_class},
+    {"Integrators", "integrator", &integrator_module},
+    {"An integrator", "integrator", &integrator_class},
+    {"A run", "run", &run_class},
+    {"A steady motion", "s", &steady_class},
+    {"The energy of a run", "energy", &energy_class},
+    {"Files", "", &load_functions},
+    {"Theory", "theory", &theory_module},
+    {"Vectors", "vector", &vector_module},
+    {"A vector", "v", &vector_class},
+    {"Data", "data", &data_module},
+    {"Named columns", "d", &data_class},
+    {"Identification", "", &identify_functions},
+    {"A fit", "fit", &fit_class},
+    {"Progress", "", &progress_functions},
+    {"Plots", "", &plot_functions},
+    {"A picture", "picture", &picture_class},
+};
 
 }  // namespace dinal::api

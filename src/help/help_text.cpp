@@ -281,12 +281,10 @@ constexpr lua::Member functions[] = {
 
 }  // namespace
 
-const lua::Class help_functions = {
-    "help", {"help(x) or help \"words\"", "The manual at the prompt.", "help \"dead zone\""}, functions};
-
-void register_help(lua_State* L) {
-    lua::add_functions(L, help_functions);
-}
+const lua::Class help_functions = {"help",
+                                   {"help(x) or help \"words\"", "The manual at the prompt.", "help \"dead zone\""},
+                                   functions,
+                                   lua::add_functions};
 
 namespace {
 

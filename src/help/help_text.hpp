@@ -41,7 +41,6 @@ std::vector<std::string> help_option_names();
 std::vector<std::string> see_also(const Section& section, const lua::Member& member);
 
 extern const lua::Class help_functions;  // help
-void register_help(lua_State* L);
 
 // docs/manual.md and docs/manual/, generated from the documentation of the API.
 

@@ -1,4 +1,4 @@
-// The list of everything that Lua sees. A new class is a bind_*.cpp, a line in both lists here, and its tests.
+// The list of everything that Lua sees: that of api/classes.hpp, then the rooms above.
 #include "help/library.hpp"
 
 #include <fmt/format.h>
@@ -21,14 +21,6 @@
 namespace dinal::help {
 
 namespace {
-
-constexpr void (*register_functions[])(lua_State*) = {
-    api::register_system, api::register_friction, api::register_spring,   api::register_excitation,
-    api::register_run,    api::register_energy,   api::register_load,     api::register_theory,
-    api::register_vector, api::register_data,     api::register_progress, api::register_plot,
-    api::register_steady, api::register_identify, sweep::register_sweep,  api::register_integrator,
-    lab::register_lab,    lab::register_report,   register_help,
-};
 
 // Plain fields of the table: documented here, set by open_library() and sys:simulate.
 constexpr lua::Member library_members[] = {
@@ -58,39 +50,16 @@ const lua::Class library_class = {
      "print(dinal.system == system)  --> true"},
     library_members};
 
-const Section all_sections[] = {
-    {"Systems", "", &api::system_functions},
-    {"A system", "sys", &api::system_class},
-    {"Laws of friction", "friction", &api::friction_module},
-    {"A law of friction", "law", &api::friction_class},
-    {"Springs", "spring", &api::spring_module},
-    {"A spring", "spring", &api::spring_class},
-    {"Excitations", "excitation", &api::excitation_module},
-    {"An excitation", "e", &api::excitation_class},
-    {"Integrators", "integrator", &api::integrator_module},
-    {"An integrator", "integrator", &api::integrator_class},
-    {"A run", "run", &api::run_class},
-    {"A steady motion", "s", &api::steady_class},
-    {"The energy of a run", "energy", &api::energy_class},
-    {"Files", "", &api::load_functions},
-    {"Theory", "theory", &api::theory_module},
-    {"Vectors", "vector", &api::vector_module},
-    {"A vector", "v", &api::vector_class},
-    {"Data", "data", &api::data_module},
-    {"Named columns", "d", &api::data_class},
-    {"Identification", "", &api::identify_functions},
-    {"A fit", "fit", &api::fit_class},
+constexpr Section sections_above[] = {
     {"Sweeps", "", &sweep::sweep_functions},
     {"Reports", "", &lab::report_functions},
     {"A report", "r", &lab::report_class},
-    {"Progress", "", &api::progress_functions},
-    {"Plots", "", &api::plot_functions},
-    {"A picture", "picture", &api::picture_class},
     {"The lab", "lab", &lab::lab_module},
     {"Answers in the lab", "", &lab::check_functions},
     {"Help", "", &help_functions},
     {"The table dinal", "dinal", &library_class},
 };
+constexpr auto all_sections = text::joined(api::sections, sections_above);
 
 // dinal.partial is nil until a run fails, so it must not be an unknown name.
 int unknown_name(lua_State* L) {
@@ -116,8 +85,8 @@ void open_library(lua_State* L) {
     lua::open_coroutines(L);
     lua::open_terminal_output(L);
     lua::make_dinal_table(L);
-    for (const auto add : register_functions) {
-        add(L);
+    for (const Section& section : all_sections) {
+        if (section.description->add != nullptr) section.description->add(L, *section.description);
     }
     lua_pushglobaltable(L);
     lua::copy_fields(L);

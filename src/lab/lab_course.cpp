@@ -43,11 +43,7 @@ void open_course_libraries(lua_State* course) {
         lua_pop(course, 1);
     }
     lua::make_dinal_table(course);
-    for (const auto add :
-         {register_system, register_friction, register_excitation, register_integrator, register_run, register_energy,
-          register_load, register_theory, register_vector, register_data, register_steady, register_identify}) {
-        add(course);
-    }
+    for (const lua::Section& section : sections) section.description->add(course, *section.description);
     lua_pushglobaltable(course);
     lua::copy_fields(course);
     lua_pop(course, 2);
@@ -627,6 +623,13 @@ constexpr lua::Member check_members[] = {
       "lab.number(4711)\ncheck(\"0\", 42)"}},
 };
 
+void add_lab(lua_State* L, const lua::Class& module) {
+    lua::add_class<LabDesk>(L, desk_class);
+    lua::push(L, LabDesk{});
+    lua_rawsetp(L, LUA_REGISTRYINDEX, &desk_key);
+    lua::add_module(L, module);
+}
+
 }  // namespace
 
 const lua::Class lab_module = {
@@ -635,26 +638,20 @@ const lua::Class lab_module = {
      "The lab course: seven sheets of two hours each, in docs/lab and, in Spanish, docs/es. Systems differ by student "
      "number, and check(question, value) judges answers.",
      "lab.number(4711)\nprint(lab.given(1).theta0 > 0)  --> true"},
-    lab_module_members};
+    lab_module_members,
+    add_lab};
 
 const lua::Class check_functions = {
     "check",
     {"check(question, value)", "Judges an answer in the lab.", "lab.number(4711)\ncheck(\"0\", 42)"},
-    check_members};
+    check_members,
+    lua::add_functions};
 
 std::int64_t lab_number_of(lua_State* L) {
     lua_rawgetp(L, LUA_REGISTRYINDEX, &desk_key);
     const auto* desk = lua::test<LabDesk>(L, -1);
     lua_pop(L, 1);
     return desk == nullptr ? 0 : desk->number;
-}
-
-void register_lab(lua_State* L) {
-    lua::add_class<LabDesk>(L, desk_class);
-    lua::push(L, LabDesk{});
-    lua_rawsetp(L, LUA_REGISTRYINDEX, &desk_key);
-    lua::add_module(L, lab_module);
-    lua::add_functions(L, check_functions);
 }
 
 }  // namespace dinal::lab

@@ -15,8 +15,6 @@
 
 namespace dinal::lab {
 
-/// Registers lab.NAME and check.
-void register_lab(lua_State* L);
 extern const lua::Class lab_module;
 extern const lua::Class check_functions;
 

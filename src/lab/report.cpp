@@ -448,22 +448,19 @@ constexpr lua::Member report_members[] = {
 const lua::Class report_functions = {
     "report",
     {"report{ ... } -> r", "Collects a report to hand in.", "print(report ~= nil)  --> true"},
-    report_functions_members};
+    report_functions_members,
+    lua::add_functions};
 
 const lua::Class report_class = {
     "report",
     {"report{ ... } -> r",
      "A report: text, values, tables, pictures and, from a script, the script itself, saved as one file.",
      "r = report{ title = \"Free decay\" }\nprint(r)  --> report \"Free decay\" with 0 parts"},
-    report_members};
+    report_members,
+    lua::add_class<ReportHandle>};
 
 void take_saved_reports_by(void (*take)(const Report& report)) {
     taker = take;
-}
-
-void register_report(lua_State* L) {
-    lua::add_class<ReportHandle>(L, report_class);
-    lua::add_functions(L, report_functions);
 }
 
 }  // namespace dinal::lab

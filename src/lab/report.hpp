@@ -40,7 +40,6 @@ struct Report {
 using ReportHandle = std::shared_ptr<Report>;
 
 /// Registers report{ ... }.
-void register_report(lua_State* L);
 extern const lua::Class report_functions;
 extern const lua::Class report_class;
 

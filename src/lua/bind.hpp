@@ -80,6 +80,8 @@ struct Class {
     const char* name;  ///< as in "a system has no field ..."
     Doc doc;
     std::span<const Member> members;
+    /// Registers it in the library table on the top of the stack: add_class<T>, add_module or add_functions.
+    void (*add)(lua_State* L, const Class& description) = nullptr;
     /// Called with (object, key) for a number key, and for strings that name no member. Pushes one value and returns 1,
     /// or returns 0 for "no such field", which becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
@@ -87,6 +89,13 @@ struct Class {
     std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
     /// Like other_keys, for strings that take precedence over members.
     lua_CFunction first_keys = nullptr;
+};
+
+/// A section of the manual: a module, a class or a set of functions.
+struct Section {
+    const char* title;   ///< "excitation", "An excitation"
+    const char* prefix;  ///< prefix of a member: "excitation.", "e:", ""
+    const Class* description;
 };
 
 /// Raises a Lua error with the file and line of the user's code in front. Its facts are kept (error_memory.hpp) for

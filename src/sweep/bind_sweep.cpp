@@ -299,18 +299,19 @@ constexpr lua::Member sweep_members[] = {
     {lua::a_function<minimise>, minimise_doc},
 };
 
+void add_sweep(lua_State* L, const lua::Class& functions) {
+    register_parted_sweep(L);
+    lua::add_functions(L, functions);
+}
+
 }  // namespace
 
 const lua::Class sweep_functions = {
     "sweep",
     {"sweep{ ... } -> data", "Many points in parallel.",
      "print(#sweep{ over = { x = { 1, 2, 3 } }, run = function(p) return { y = p.x^2 } end })  --> 3"},
-    sweep_members};
-
-void register_sweep(lua_State* L) {
-    register_parted_sweep(L);
-    lua::add_functions(L, sweep_functions);
-}
+    sweep_members,
+    add_sweep};
 
 // minimise{ over, run }: the minimum of a function of one or two parameters within limits. A coarse grid locates the
 // valley; golden sections follow it in one parameter, the method of Nelder and Mead (1965) in two.

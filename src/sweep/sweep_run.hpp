@@ -221,8 +221,6 @@ int run_sweep(lua_State* L);
 /// Calls push_parted() with the options of sweep and the mark of a function of another language.
 int sweep_in_parts(lua_State* L);
 
-/// Registers sweep, bifurcation and minimise; in bind_sweep.cpp.
-void register_sweep(lua_State* L);
 extern const lua::Class sweep_functions;
 void register_parted_sweep(lua_State* L);
 
