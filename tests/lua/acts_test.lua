@@ -231,4 +231,38 @@ test("endless bounces by an action are called so also late, where M has the roun
     end
 end)
 
+test("an act at a step of its event's function, whatever it changes, leaves the function behind the step", function()
+    local sys = system { I = 1, k = 1, C = 0.05, Rd = 0.01 }
+    local whens = {
+        { function(t, theta) return theta > 0.3 and 1 or -1 end, function(t, theta) return theta - 0.3 end },
+        { function(t, theta) return math.sin(3 * t) > 0.3 and 1 or -1 end, function(t) return math.sin(3 * t) - 0.3 end },
+        { function(t, theta, v) return v + 0.1 * t > 0.2 and 1 or -1 end, function(t, theta, v) return v + 0.1 * t - 0.2 end },
+        { function(t, theta, v, z) return theta + 0.5 * z.x > 0.4 and 1 or -1 end, function(t, theta, v, z) return theta + 0.5 * z.x - 0.4 end },
+    }
+    local acts = {
+        function(t, theta, v) return theta, v + 0.1 end,
+        function(t, theta, v) return theta, 0.7 * v end,
+        function(t, theta, v) return theta + 0.2, v end,
+        function(t, theta, v, z) z.x = z.x + 0.1 end,
+    }
+    for _, by in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-10 } } do
+        for i, each in ipairs(whens) do
+            for j, act in ipairs(acts) do
+                local function told(when)
+                    local run = sys:simulate { M = function(t) return math.sin(1.3 * t) end, theta0 = 1, velocity0 = 0.3, t_end = 8, dt = 1,
+                        integrator = by, states = { x = { start = 0, rate = function(t, theta, v, z) return 0.2 * theta - z.x end } },
+                        events = { { when = when, act = act } } }
+                    equal(run.status, "end", run.outcome)
+                    local times = {}
+                    for _, event in ipairs(of_kind(run, "user")) do times[#times + 1] = event.t end
+                    return times
+                end
+                local steps, crosses = told(each[1]), told(each[2])
+                equal(#steps, #crosses, ("%s, when %d, act %d"):format(by, i, j))
+                for k = 1, #steps do near(steps[k], crosses[k], 1e-7) end
+            end
+        end
+    end
+end)
+
 finish()

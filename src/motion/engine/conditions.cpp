@@ -139,10 +139,12 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
     if (forgotten_ && crossed_at_ == at.t) {
-        // A condition was crossed here, and then an action changed the state: the rounding of the angles must not lead
-        // it back.
-        constexpr double past_rounding = 1e-12;
-        for (std::size_t i = 0; i < n; ++i) y[i] += past_rounding * unit_ * y[n + i];
+        // A condition was crossed here, and then an action changed the state: rounding must not lead it back.
+        constexpr double past_rounding = 1e-12, few = 16;
+        const double step = std::max(past_rounding * unit_, few * rounding * std::fabs(at.t));
+        const std::vector<double> moving = slides_.free_rates(mode, at);
+        for (std::size_t k = 0; k < y.size(); ++k) y[k] += step * moving[k];
+        if (at.t + step < mechanics_.next_break(at.t)) t += step;
     }
     std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
     bool starts_with_belt = false;

@@ -229,6 +229,8 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
             if (!restart_contacts(Because::act)) return false;
             see_flight();
         }
+        conditions_->decide({now_.t.hi, now_.side(), now_.departing(problem_.system, scratch_.departing)}, now_.mode,
+                            segment_);
         users_.stand_where_put(values, now_.y != before ? told : std::vector<std::size_t>(), now_, segment_, pace_.h,
                                *balances_, frames_->of(now_.mode));
         if (moved && users_.fades(event, now_.t.hi) && !wanted.stop) return fail(Outcome::chattering);
