@@ -295,6 +295,7 @@ class Travel(unittest.TestCase):
         equal(again({"x": 4}).y, weights[0] + 30_000 + 4 + 2)
         recursive = dinal.lua("(function() local function f(n) return n < 2 and 1 or n * f(n - 1) end return f end)()")
         equal(pickle.loads(pickle.dumps(recursive))(5), 120)
+        equal(dinal.lua("function() return { 1, nil, 3 }, { 1, 2 } end")(), ({1: 1, 3: 3}, [1, 2]))  # a hole makes no list
 
     def test_what_remembers_its_call(self):
         osc = dinal.system(I=1, k=4, Rd=.3)
