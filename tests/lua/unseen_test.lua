@@ -321,4 +321,21 @@ test("an event in one direction is not told of a peak in the other one, also whe
     end
 end)
 
+test("a smooth window whose formula overflows beyond its ends does not end the run", function()
+    local function bump(p, w)
+        return function(x)
+            local u = (x - p) / w
+            if math.abs(u) >= 1 then return 0 end
+            return exp(1 - 1 / (1 - u * u)) / w
+        end
+    end
+    for _, kind in ipairs { "M", "field", "damping", "state", "spring", "friction", "Rd", "normal", "base", "delayed" } do
+        for _ = 1, 12 do
+            local p, w = lot(.3, 1.5), 10 ^ lot(-6, -1.5)
+            local want, got = kinds[kind](bump(p, w), 1.2069003224378765, w)
+            near(got, want, 2e-6, ("%s: w %g p %g"):format(kind, w, p))
+        end
+    end
+end)
+
 finish()

@@ -149,7 +149,8 @@ void Engine::again(Flow::Attempt attempt) {
     if (attempt == Flow::Attempt::failed) {
         pace_.bad_time = solver_->bad_time();
         const double near = std::max(near_failure * pace_.unit, 64 * rounding * std::fabs(now_.t.hi));
-        if (problem_.step > 0 || now_.t.until(pace_.bad_time) <= near || !mechanics_.may_go_on())
+        const bool there = now_.t.until(pace_.bad_time) <= near && !solver_->strayed();
+        if (problem_.step > 0 || there || !mechanics_.may_go_on())
             fail(now_.greatest_of_state() > huge ? Outcome::state_not_finite : Outcome::excitation_not_finite);
         pace_.h = segment_.h / 2;
         return;

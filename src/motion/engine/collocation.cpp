@@ -233,12 +233,16 @@ Flow::Attempt Collocation::iterate(Segment& s, const Mode& mode, const Frame& fr
     for (int i = 0; i < most_iterations; ++i) {
         if (!evaluate(s, mode, frame, 1)) {
             newton_.forget();  // the slopes may belong to a distant state
+            strayed_ = std::any_of(s.y.begin(), s.y.end(), [](const Nodes& y) {
+                return !std::all_of(y.begin(), y.end(), [](double x) { return std::isfinite(x); });
+            });
             return Attempt::failed;
         }
         if (count == 0) return Attempt::resolved;
         if (slopes != Slopes::none && !newton_.known() &&
             !newton_.find(s, mode, frame, node_count / 2, noise_.floor())) {
             newton_.forget();
+            strayed_ = true;
             return Attempt::failed;
         }
         const auto [left, small] = find_residual(s, frame);

@@ -37,6 +37,7 @@ Flow::Flow(const Mechanics& mechanics, double tolerance, double longest)
 Flow::Attempt Flow::solve(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                           const std::vector<double>& departing) {
     unresolved_ = std::numeric_limits<double>::infinity();
+    strayed_ = false;
     note_rates_until(s.start.hi, s);
     if (!sample(s, mode, frame, begin)) return Attempt::failed;
     sizes_.at_start.find(mechanics_, s, {s.times[0], s.side(0), begin});

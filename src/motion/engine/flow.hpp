@@ -38,6 +38,9 @@ public:
     /// which is relative to the greatest one, may matter before x.
     [[nodiscard]] bool is_dwarfed_beyond(double x, const Segment& segment) const;
     [[nodiscard]] double bad_time() const { return bad_time_; }
+    /// Returns whether the last attempt failed because it strayed to a motion that is not finite, which the function of
+    /// a piece may cause beyond its end.
+    [[nodiscard]] bool strayed() const { return strayed_; }
     /// The error of the last stretch over the allowed one, scaled as if of order 16; at most 1 if it is resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
     /// The factor by which the next stretch may be longer than the last resolved one.
@@ -114,6 +117,7 @@ protected:
     } offsets_;  ///< motion of each body relative to its groups
     /// accelerations of the groups and rates of the states, and their recomputed values
     std::vector<Nodes> unknown_, found_;
+    bool strayed_ = false;
     struct {
         std::vector<double> all;
         TorqueSizes at_start;
