@@ -338,4 +338,30 @@ test("a smooth window whose formula overflows beyond its ends does not end the r
     end
 end)
 
+test("the rounding of a formula is not taken for a jump of a friction limit or a belt", function()
+    local M = excitation.harmonic { amplitude = 1, omega = 1.3 }
+    local function run(of, o)
+        local parts, options = { I = 1, k = 1, C = .1, Rd = not of.friction and .2 or nil }, { M = M, theta0 = .5, t_end = 20, dt = 1 }
+        for key, value in pairs(of) do parts[key] = value end
+        for key, value in pairs(o) do options[key] = value end
+        local found = system(parts):simulate(options)
+        equal(found.status, "end", found.outcome)
+        return found:at(20)
+    end
+    for _, w in ipairs { 3e-3, 3e-4, 5e-5 } do
+        -- The first form loses digits: cos t - 1 = -2 sin(t/2)^2.
+        local rounds = function(t) return exp((math.cos(t) - 1) / w ^ 2) end
+        local exact = function(t) return exp(-2 * (math.sin(t / 2) / w) ^ 2) end
+        for kind, of in pairs {
+            Rd = function(f) return { Rd = function(t) return .2 * f(t) end }, {} end,
+            Re = function(f) return { Re = function(t) return .2 + .3 * f(t) end }, {} end,
+            normal = function(f) return { normal = function(t) return 1 + f(t) end }, {} end,
+            law = function(f) return { friction = function(s, t) return .1 + .1 * f(t) end }, {} end,
+            belt = function(f) return {}, { belt = function(t) return .5 + f(t) end } end,
+        } do
+            near(run(of(rounds)), run(of(exact)), 1e-6, ("%s: w %g"):format(kind, w))
+        end
+    end
+end)
+
 finish()

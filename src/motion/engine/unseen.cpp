@@ -1,6 +1,7 @@
 #include "motion/engine/unseen.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <queue>
 #include <utility>
@@ -416,29 +417,72 @@ bool Proofs::hides_nothing(Segment& s, const Mode& mode, const Beside& beside, d
     return proof.good();
 }
 
-std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
+/// The rounding of a formula at a node of the stretch, or 0 if unknown. `first` is its first argument, and `speed` the
+/// one before the states.
+double Proofs::rounding_at(std::size_t node, const Segment& s, model::Formula& formula,
+                           const model::terms::Piece* piece, double first, const double* speed) {
     const std::size_t n = mechanics_.bodies();
-    std::vector<double> of(n + mechanics_.states());
     const bool named = mechanics_.system().named;
     const std::size_t told = 2 * n + mechanics_.states_of_user(), from = named ? 0 : 2;
     const auto constant = [](double x) { return Series{x}; };
-    const auto add_of = [&](std::size_t k, double gain, model::Formula& formula, const model::terms::Piece* piece,
-                            double first, const double* speed) {
-        unseen_.begin(formula, piece);
-        unseen_.give(0, constant(first));
-        if (formula.takes_motion() && !named) {
-            unseen_.give(1, constant(s.y[0][0])), unseen_.give(2, constant(s.y[n][0]));
-        }
-        std::size_t place = formula.first_state();
-        const std::size_t behind = place + formula.state_count();
-        if (speed != nullptr && place < behind) unseen_.give(place++, constant(*speed));
-        for (std::size_t i = from; i < told && place < behind; ++i) unseen_.give(place++, constant(s.y[i][0]));
-        const double rounded = std::fabs(gain) * unseen_.rounded();
-        if (std::isfinite(rounded)) of[k] += rounded;
-    };
+    unseen_.begin(formula, piece);
+    unseen_.give(0, constant(first));
+    if (formula.takes_motion() && !named) {
+        unseen_.give(1, constant(s.y[0][node])), unseen_.give(2, constant(s.y[n][node]));
+    }
+    std::size_t place = formula.first_state();
+    const std::size_t behind = place + formula.state_count();
+    if (speed != nullptr && place < behind) unseen_.give(place++, constant(*speed));
+    for (std::size_t i = from; i < told && place < behind; ++i) unseen_.give(place++, constant(s.y[i][node]));
+    const double rounded = unseen_.rounded();
+    return std::isfinite(rounded) ? rounded : 0;
+}
+
+/// Sums the rounding of the formulas of a signal at a node.
+double Proofs::rounding_at(std::size_t node, const Segment& s, const Signal& signal) {
+    double sum = 0;
+    const double t = s.times[node];
+    signal.for_each_read(t, [&](model::Formula& formula, const auto* piece, double delay, double gain) {
+        sum += std::fabs(gain) * rounding_at(node, s, formula, piece, t - delay, nullptr);
+    });
+    return sum;
+}
+
+namespace {
+
+constexpr std::array<std::size_t, 3> looked_at{0, node_count / 2, node_count - 1};
+
+}  // namespace
+
+double Proofs::rounding_of_belt(const Segment& s, std::size_t joint) {
+    double most = 0;
+    for (const std::size_t node : looked_at) most = std::max(most, rounding_at(node, s, mechanics_.belt_signal(joint)));
+    return most;
+}
+
+double Proofs::rounding_of_limit(const Segment& s, const Mode& mode, std::size_t joint) {
+    double most = 0;
+    const Mechanics::Asked law = mechanics_.asked_law(joint);
+    const bool alone = mechanics_.system().joints[joint].friction.function == nullptr;
+    model::Formula* formula = law.function != nullptr && !alone ? law.function->read() : nullptr;
+    for (const std::size_t node : looked_at) {
+        double sum = 0;
+        mechanics_.for_each_friction(joint, mode, s.moment(node, point_), [&](const Signal& signal, double torque) {
+            sum += std::fabs(torque) * rounding_at(node, s, signal);
+        });
+        const double at_rest = 0;
+        if (formula != nullptr) sum += rounding_at(node, s, *formula, law.piece, s.times[node], &at_rest);
+        most = std::max(most, sum);
+    }
+    return most;
+}
+
+std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
+    const std::size_t n = mechanics_.bodies();
+    std::vector<double> of(n + mechanics_.states());
     const auto add_asked = [&](std::size_t k, const Mechanics::Asked& asked, double first, const double* speed) {
         model::Formula* formula = asked.function != nullptr ? asked.function->read() : nullptr;
-        if (formula != nullptr) add_of(k, 1, *formula, asked.piece, first, speed);
+        if (formula != nullptr) of[k] += rounding_at(0, s, *formula, asked.piece, first, speed);
     };
     const double t = s.start.hi;
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
@@ -452,9 +496,7 @@ std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
         const bool alone = joint.friction.function == nullptr, slides = mode.friction[j].way != model::Motion::stuck;
         for (const auto& [body, by] : joint.of) {
             const auto add_read = [&, k = body, per = by](const Signal& signal, double torque) {
-                signal.for_each_read(t, [&](model::Formula& formula, const auto* piece, double delay, double gain) {
-                    add_of(k, per * torque * gain, formula, piece, t - delay, nullptr);
-                });
+                of[k] += std::fabs(per * torque) * rounding_at(0, s, signal);
             };
             add_read(mechanics_.loads()[j], 1);
             if (slides) mechanics_.for_each_friction(j, mode, s.moment(0, point_), add_read);

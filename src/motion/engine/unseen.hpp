@@ -86,6 +86,9 @@ public:
     /// Returns the rounding of formulas at the start of the stretch: of the torques on each body and of the rate of
     /// each state.
     std::vector<double> roundings(const Segment& segment, const Mode& mode);
+    /// The greatest rounding of the formulas of a belt on the stretch, and of those of a friction limit at rest.
+    double rounding_of_belt(const Segment& segment, std::size_t joint);
+    double rounding_of_limit(const Segment& segment, const Mode& mode, std::size_t joint);
     /// The time at which a load deviated from its series; loads are sampled until it has passed.
     [[nodiscard]] double seen() const { return seen_; }
     void see(double t) { seen_ = t; }
@@ -93,6 +96,10 @@ public:
     [[nodiscard]] bool failed_last() const { return failed_in_a_row_ > 0; }
 
 private:
+    double rounding_at(std::size_t node, const Segment& segment, model::Formula& formula,
+                       const model::terms::Piece* piece, double first, const double* speed);
+    double rounding_at(std::size_t node, const Segment& segment, const Signal& signal);
+
     const Mechanics& mechanics_;
     bool any_;  ///< whether there is any user function
     Unseen unseen_;
