@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -441,10 +442,12 @@ bool ReturnSearch::closes_from(const FullState& now, const Reach& reach, double 
 
 /// Detects a rest of an autonomous system: standing, or steady rotation with all other numbers constant.
 bool ReturnSearch::rests(const motion::Run& run, const VectorXd& range, const VectorXd& most_changed) {
-    const bool stands = run.outcome == model::Outcome::at_rest ||
-                        (run.outcome == model::Outcome::stuck_at_end && question().drive.states.empty());
-    bool still = true, still_states = true;
     const auto& y = run.left->carry->y;
+    const auto velocities = std::span(y).subspan(static_cast<std::size_t>(n()), static_cast<std::size_t>(n()));
+    const bool moves = std::any_of(velocities.begin(), velocities.end(), [](double v) { return v != 0; });  // with belts
+    const bool stands = run.outcome == model::Outcome::at_rest ||
+                        (run.outcome == model::Outcome::stuck_at_end && !moves && question().drive.states.empty());
+    bool still = true, still_states = true;
     const double rounded = rounding_of(Runs::at_stop(run));
     for (Index k = 0; k < range.size(); ++k) {
         const double size = std::max(most_changed[k], std::fabs(y[static_cast<std::size_t>(k)]));
