@@ -444,7 +444,8 @@ bool ReturnSearch::closes_from(const FullState& now, const Reach& reach, double 
 bool ReturnSearch::rests(const motion::Run& run, const VectorXd& range, const VectorXd& most_changed) {
     const auto& y = run.left->carry->y;
     const auto velocities = std::span(y).subspan(static_cast<std::size_t>(n()), static_cast<std::size_t>(n()));
-    const bool moves = std::any_of(velocities.begin(), velocities.end(), [](double v) { return v != 0; });  // with belts
+    const bool moves =
+        std::any_of(velocities.begin(), velocities.end(), [](double v) { return v != 0; });  // with belts
     const bool stands = run.outcome == model::Outcome::at_rest ||
                         (run.outcome == model::Outcome::stuck_at_end && !moves && question().drive.states.empty());
     bool still = true, still_states = true;

@@ -11,7 +11,7 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double few_roundings = 16;  // multiple of a formula's rounding that a series of its values may show
+constexpr double roundings_shown = 16;  // multiple of a formula's rounding that a series of its values may show
 
 constexpr double gross = 1e3;  // a stretch unresolved by more than this factor may contain a break
 /// The nodes before the widest gaps. Users' functions are also sampled in the middle of these.
@@ -373,8 +373,10 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     fastest_.lost_by_belts = 0;
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (!mechanics_.has_belt(joint)) continue;
-        const double lost = lost_in_time(cheb::fit(s.belts[joint]), late(s), s.h, fastest_.belts[joint]) +
-                            few_roundings * proofs_.rounding_of_belt(s, joint);
+        const Series belt = cheb::fit(s.belts[joint]);
+        double lost = lost_in_time(belt, late(s), s.h, fastest_.belts[joint]);
+        if (cheb::tail(belt) > lost + 16 * rounding * fastest_.belts[joint])
+            lost += roundings_shown * proofs_.rounding_of_belt(s, joint);
         fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost);
     }
     const std::vector<double> by_others = passed_on(s, frame);
@@ -449,7 +451,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
                 const double most = greatest(s.limits[joint][way]) + torques;
                 double allowed =
                     (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
-                if (cheb::tail(limit) > allowed) allowed += few_roundings * proofs_.rounding_of_limit(s, mode, joint);
+                if (cheb::tail(limit) > allowed) allowed += roundings_shown * proofs_.rounding_of_limit(s, mode, joint);
                 note(s, limit, 1, allowed);
             }
         }
