@@ -717,4 +717,18 @@ test("a body that comes to rest on the ground and on one that a load holds still
     end
 end)
 
+test("a clutch that reaches its limit as a load stops to hold its body slips from there on", function()
+    local rig = system {
+        bodies = { a = { I = 0.6, C = 0.2, spring = function(x) return 2 * x ^ 3 end }, c = { I = 1.7 },
+            b = { I = 0.3, C = 0.5, spring = function(x) return 1.2 * x ^ 3 end, walls = { upper = 0.6, stiffness = 30.6 } } },
+        links = { ab = { "a", "b", Rd = 0.7, k = 5.1, C = 0.3 }, bc = { "b", "c", Rd = 0.5, C = 0.1 } } }
+    local function simulated(cruise)
+        return rig:simulate { M = { b = function(t) return 0.2 * math.sin(2.1 * t + 0.3) end, c = function(_, _, v) return cruise(v.c) end },
+            theta0 = { a = 0.1, b = 0.1, c = 0.5 }, velocity0 = { a = -0.8, b = -0.3, c = 0.1 }, t_end = 3.5, times = { 2.7, 3.5 } }
+    end
+    local run = simulated(function(v) return v > -0.2 and -0.5 or v < -0.2 and 0.5 or 0 end)
+    near(run.c.theta, simulated(function(v) return -0.5 * math.tanh((v + 0.2) / 1e-6) end).c.theta, 1e-5)
+    near(run:energy().total.error, 0, 1e-10)
+end)
+
 finish()

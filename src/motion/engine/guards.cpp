@@ -214,6 +214,13 @@ void Guards::watch_release(std::size_t joint) {
                 pull[j] = -found.holding[joint];
             }
             if (!good_) return;
+            // The surface at which a load jumps may have been met for an instant only, at which the joint holds.
+            constexpr double hardly = 1e-9;
+            bool instant = -sign * segment_.holding[joint][0] <= most[0] + hardly * torques;
+            for (std::size_t j = 1; j < node_count; ++j) {
+                instant = instant && std::fabs(pull[j] + segment_.holding[joint][j]) <= 64 * rounding * torques;
+            }
+            if (instant) pull[0] = -segment_.holding[joint][0];
             series = cheb::fit(pull);
         }
         const double blunt = now_.mode.friction[joint].blunt;
