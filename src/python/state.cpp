@@ -28,6 +28,7 @@ namespace {
 // Protected by Python's lock (the GIL), except for the signal handler.
 lua_State* running = nullptr;
 std::vector<int> released;
+std::vector<PyObject*> to_drop;  // values that the owner's thread has dropped while others run
 unsigned long owner_thread = 0;  // thread of the present Lua call; 0: none
 int calls_within = 0;            // nesting depth of its calls
 bool is_torn = false;            // whether this process was forked during a call of another thread
@@ -258,6 +259,15 @@ void need_python() {
     EndsHere guard;
     PyEval_RestoreThread(std::exchange(unlocked, nullptr));
     guard.passed();
+    for (PyObject* value : std::exchange(to_drop, {})) Py_DECREF(value);
+}
+
+void drop(py::object&& value) {
+    if (owner_thread == PyThread_get_thread_ident() && unlocked != nullptr) {
+        to_drop.push_back(value.release().ptr());
+    } else {
+        const py::object last = std::move(value);
+    }
 }
 
 py::object call_protected(py::object (*body)(lua_State* L, const void* data), const void* data) {

@@ -45,6 +45,9 @@ public:
 /// be slow if other threads want it.
 void need_python();
 
+/// Drops a Python value, or keeps it until Lua next needs Python if others run.
+void drop(py::object&& value);
+
 /// A Python value in Lua, which may drop it at any time.
 struct Held {
     py::object value;
@@ -52,7 +55,7 @@ struct Held {
     Held(Held&&) noexcept = default;
     Held& operator=(Held&&) = delete;
     ~Held() {
-        if (value) need_python();
+        if (value) drop(std::move(value));
     }
 };
 
