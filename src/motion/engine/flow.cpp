@@ -365,6 +365,14 @@ std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const 
     return rough;
 }
 
+/// Returns the possible error of a belt's velocity due to the rounding of times far from t = 0, and of its formulas
+/// where its series ends high.
+double Flow::lost_by_belt(const Segment& s, std::size_t joint, const Series& belt) {
+    const double fastest = fastest_.belts[joint], lost = lost_in_time(belt, late(s), s.h, fastest);
+    const bool ends_high = cheb::tail(belt) > lost + 16 * rounding * fastest;
+    return lost + (ends_high ? roundings_shown * proofs_.rounding_of_belt(s, joint) : 0);
+}
+
 /// Compares the last coefficients of each acceleration and rate with the allowed error.
 void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     unresolved_ = 0, growth_ = model::never;
@@ -373,11 +381,7 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     fastest_.lost_by_belts = 0;
     for (std::size_t joint = 0; joint < mechanics_.joints(); ++joint) {
         if (!mechanics_.has_belt(joint)) continue;
-        const Series belt = cheb::fit(s.belts[joint]);
-        double lost = lost_in_time(belt, late(s), s.h, fastest_.belts[joint]);
-        if (cheb::tail(belt) > lost + 16 * rounding * fastest_.belts[joint])
-            lost += roundings_shown * proofs_.rounding_of_belt(s, joint);
-        fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost);
+        fastest_.lost_by_belts = std::max(fastest_.lost_by_belts, lost_by_belt(s, joint, cheb::fit(s.belts[joint])));
     }
     const std::vector<double> by_others = passed_on(s, frame);
     judge_bodies(s, mode, frame, by_others);
@@ -458,7 +462,7 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         if (!mechanics_.has_belt(joint)) continue;
         const Series belt = cheb::fit(s.belts[joint]);
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
-                               16 * rounding * fastest_.belts[joint] + fastest_.lost_by_belts + smallest;
+                               16 * rounding * fastest_.belts[joint] + lost_by_belt(s, joint, belt) + smallest;
         note(s, belt, 1, allowed);
     }
 }

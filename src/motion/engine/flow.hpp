@@ -141,6 +141,7 @@ private:
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
     void note(const Segment& segment, const Series& series, double scale, double allowed);
+    [[nodiscard]] double lost_by_belt(const Segment& segment, std::size_t joint, const Series& belt);
     [[nodiscard]] double lost_of_torques(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;
     bool hides_nothing(Segment& segment, const Mode& mode, double until);

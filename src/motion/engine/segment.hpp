@@ -70,7 +70,7 @@ struct Segment : NodeTimes {
     }
 };
 
-/// Causes that end a stretch.
+/// Causes that end a stretch. A kink: a normal load passes 0; a bend: the slip of bristles does.
 enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, bend, stays, condition };
 
 struct Ending {

@@ -76,7 +76,7 @@ bool Unseen::is_shown(double allowed, double part) {
            enclosure.apart <= allowed && decay_of_error(cheb::degree) * walk_.greatest_relative_radius() <= close;
 }
 
-/// Discs grow by the roundings of each step.
+/// The disc of a value grows by the rounding of each step.
 double Unseen::rounded(std::optional<std::size_t> condition) {
     walk_.begin(*formula_, piece_, false);
     // What decides a condition may be a small difference, in which the rounding of the arguments remains.

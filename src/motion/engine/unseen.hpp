@@ -41,7 +41,7 @@ public:
     }
     [[nodiscard]] const model::terms::Piece* piece() const { return piece_; }
     /// The error of the function, or of the quantity that decides a condition, in the middle of the stretch due to
-    /// rounding in its steps; not finite if unknown.
+    /// rounding in its steps, for a condition also in its arguments; not finite if unknown.
     [[nodiscard]] double rounded(std::optional<std::size_t> condition = {});
 
 private:
