@@ -178,6 +178,12 @@ double PeriodMap::slope_before(double t) const {
     return (3 * now - 4 * one + two) / (2 * h);
 }
 
+/// Returns whether M jumps within reach of differences around t; `pull` is the size of torques there.
+bool PeriodMap::jumps_at(double t, double pull) const {
+    const double reach = 1e-9 * length_, clearly = 1e-6 * (std::fabs(pull) + system_.breakaway());
+    return std::fabs(drive_.M().value(t + reach) - drive_.M().value_before(t - reach)) > clearly;
+}
+
 void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) const {
     const model::Lowered& system = lowered_;
     Eigen::Matrix2d total = Eigen::Matrix2d::Identity();
@@ -205,9 +211,9 @@ void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) 
                     s.end.theta > s.begin.theta ? model::Motion::forward : model::Motion::backward;
                 const model::Motion back =
                     way == model::Motion::forward ? model::Motion::backward : model::Motion::forward;
-                const double before =
-                    std::fma(-system.stiffness(), event.theta, drive_.M().value_before(event.t)) - system.braking(way);
+                const double before = pull - system.braking(way);
                 const double after = pull - system.braking(back);
+                step.has_corner = step.has_corner || jumps_at(event.t, pull);
                 step.differentiable = before != 0;
                 total.row(1) *= after / before;
                 break;

@@ -40,6 +40,7 @@ struct MapStep {
     bool differentiable = true;    ///< whether `derivative` is valid; otherwise use differences
     bool finished = true;          ///< whether the run reached its end with finite numbers
     bool moved = true;             ///< whether the mass moved at any time
+    bool has_corner = false;       ///< whether the map is not smooth here: the mass turns exactly as M jumps
     bool on_edge = false;          ///< whether the mass rests at the limit of friction: the derivative is one-sided
     double low = 0, high = 0;      ///< the extremes of theta
     double t_low = 0, t_high = 0;  ///< times of the extremes
@@ -88,6 +89,7 @@ private:
     void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
     Eigen::Matrix2d free_motion(double length) const;
     double slope_before(double t) const;
+    bool jumps_at(double t, double pull) const;
 
     const model::Oscillator& system_;
     model::Lowered lowered_;

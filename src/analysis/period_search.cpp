@@ -159,7 +159,9 @@ private:
         if (!step.moved) return stand(rest_of_run().value_or(x));
         facts_.outcome = step.outcome;
         if (!step.finished) return false;
-        if (!step.differentiable) {
+        if (step.has_corner) {
+            step.differentiable = false;
+        } else if (!step.differentiable) {
             const Map::Return first = map.measured(x);
             if (const auto D = map.derivative(first.to, {}, 1, 2)) {
                 step.derivative = map.is_half() ? -D->by_place : D->by_place;

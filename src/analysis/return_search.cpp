@@ -94,6 +94,13 @@ private:
         return 64 * motion::engine::rounding * std::max(largest_, now.y.head(n()).cwiseAbs().maxCoeff());
     }
 
+    [[nodiscard]] bool measures_any_angle() const {
+        for (Eigen::Index i = 0; i < n(); ++i) {
+            if (chart_.measures(i)) return true;
+        }
+        return false;
+    }
+
     const SteadyQuestion& question() const { return runs_.question(); }
     Eigen::Index n() const { return runs_.bodies(); }
     /// The period of M, or the slowest natural period.
@@ -613,7 +620,10 @@ std::optional<VectorXd> ReturnSearch::complete_period(const FullState& from, mot
     // Bodies that slip a little less in each period come to a place where they adhere.
     const bool creeps = forced && n() > 1 && run.outcome == model::Outcome::stuck_at_end && !run.events.empty() &&
                         greatest(reach, n()) <= creep * farthest_;
-    const bool moves = !creeps && reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
+    // Without a period, only a motion of angles is a cycle: the last of a decay may pass a place twice by rounding.
+    const Index widest = widest_of(reach, chart_, n());
+    const bool cycles = forced || question().settles >= 0 || !measures_any_angle() || (widest >= 0 && widest < n());
+    const bool moves = !creeps && cycles && reach.range().head(2 * n()).maxCoeff() > nothing * largest_;
     const bool rotates = !moves && is_moving(from);
     if (!moves && !forced && question().settles < 0) return {};  // not a cycle: a further run decides how it ends
     facts_.outcome = run.outcome;

@@ -177,7 +177,7 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
     motion.stops = map.is_half() ? 2 * step.stops : step.stops;
     motion.stuck = step.moved ? std::min(1.0, step.stuck / map.length()) : 1;
     motion.symmetric = map.is_half();
-    if (!step.moved) motion.stable = true;
+    if (!step.moved || step.has_corner) motion.stable = true;
     if (!step.differentiable) return motion;
     std::vector<std::complex<double>> multipliers = eigenvalues(step.derivative);
     if (map.is_half()) {

@@ -326,13 +326,17 @@ private:
             }
         }
     }
+    bool ends_a_run() const { return motion_.by_returns.run && !motion_.by_returns.question; }
     void describe_memory() {
-        if (!motion_.by_returns.run || motion_.by_returns.question) return;
+        if (!ends_a_run()) return;
         say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
             timeless_ ? "" : fmt::format("of {} periods of M ", motion_.maps));
     }
     void describe_stability() {
-        if (!motion_.differentiable) return;
+        if (!motion_.differentiable) {
+            if (!ends_a_run()) say("It has no multipliers: the motion is not smooth here.");
+            return;
+        }
         double largest = 0;
         for (const std::complex<double>& value : motion_.multipliers) largest = std::max(largest, std::abs(value));
         constexpr double next_to_nothing = 1e-10;  // the accuracy of multipliers from differences of runs

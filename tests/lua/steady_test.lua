@@ -555,4 +555,34 @@ test("a body that a feedback holds at a jump rests, and a load that does nothing
     assert(cycle:explain():gsub("%s+", " "):find("There is also a rest at theta = 0, which is unstable.", 1, true))
 end)
 
+test("a turn exactly at a jump of M has no multipliers", function()
+    -- With 0.1 % more stiffness it turns before the jumps, and each turn multiplies the velocity of a disturbance by the
+    -- ratio of the torques on both sides of it.
+    local P = 2 * math.pi / 1.3
+    local function found(k, sign)
+        local M = function(t) return ((t / P) % 1 < 0.5 and 1.9 or -1.9) * sign end
+        return system { I = 1, C = 0.2, k = k, Rd = 0.2, Re = 0.4 }:steady { M = M, theta0 = -0.2 * sign, velocity0 = -0.1 * sign, omega = 1.3 }
+    end
+    for _, sign in ipairs { 1, -1 } do
+        local s, beside = found(1.7, sign), found(1.7017, sign)
+        near(s.amplitude, beside.amplitude, 5e-3)
+        equal(s.multipliers, nil)
+        assert(s:explain():gsub("%s+", " "):find("It has no multipliers: the motion is not smooth here.", 1, true), s:explain())
+        local torque = 1.7017 * beside.amplitude - 1.9
+        local ratio = (torque - 0.2) / (torque + 0.2)
+        near(beside.multipliers[1].abs * beside.multipliers[2].abs, math.exp(-0.2 * P) * ratio^2, 1e-4)
+    end
+end)
+
+test("the end of a decay is not a cycle", function()
+    local rig = system {
+        bodies = {
+            a = { I = 1.6, k = 1.1, C = 0.01, Rd = 0.5, Re = 0.7, walls = { lower = -0.8, restitution = 0.8 } },
+            b = { I = 1.1, k = 2.5, C = 0.1 }, c = { I = 1.6, k = 2.6, C = 0.1, walls = { lower = -0.3, restitution = 0.5 } },
+        },
+        links = { ab = { "a", "b", k = 3.4, C = 0.3 }, bc = { "b", "c", k = 4.7, C = 0.1, Rd = 0.3, Re = 0.4 } },
+    }
+    equal(rig:steady { belt = { a = -0.4 }, velocity0 = { a = -0.8, b = 0.9, c = 1 } }.status, "rest")
+end)
+
 finish()
