@@ -132,7 +132,7 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
     if (const int wall = mode.leans[joint]; wall != 0) {
         towards = wall > 0 ? Motion::backward : Motion::forward;
         const bool sticks = mode.rubs[joint] != 0 && mode.friction[joint].way == Motion::stuck;
-        return -wall * pull - (sticks ? mechanics.holding(joint, towards, at) : 0) - mode.friction[joint].blunt;
+        return -wall * pull - (sticks ? mechanics.holding(joint, towards, at) : 0) - mode.friction[joint].margin;
     }
     if (const Slipping& how = mode.friction[joint]; how.creeps != Motion::stuck) {
         const double sliding = mechanics.sliding(joint, {.way = how.creeps}, 0, at);
@@ -141,10 +141,10 @@ double excess(const Mechanics& mechanics, std::size_t joint, const Balance& bala
         return off.beyond;
     }
     towards = pull > 0 ? Motion::forward : Motion::backward;
-    const double holding = mechanics.limit_at_rest(joint, mode, towards, at) + mode.friction[joint].blunt;
+    const double holding = mechanics.limit_at_rest(joint, mode, towards, at) + mode.friction[joint].margin;
     if (std::isinf(holding)) {  // a freewheel only leaves forward
         towards = Motion::forward;
-        return pull - balance.blurred - mechanics.limit_at_rest(joint, mode, towards, at) - mode.friction[joint].blunt;
+        return pull - balance.blurred - mechanics.limit_at_rest(joint, mode, towards, at) - mode.friction[joint].margin;
     }
     if (mechanics.bodies() > 1 || !mechanics.is_native(joint) || mechanics.has_belts() || mechanics.states() > 0 ||
         mode.presses[joint] != 0) {

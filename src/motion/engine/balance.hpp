@@ -35,13 +35,13 @@ public:
     /// The total inertia of all bodies.
     double inertia() const { return inertia_; }
 
-    /// The balance at the present, with contacts about to slip as if they moved. Like the other functions it returns
-    /// false if a value is not finite.
+    /// Computes the present balance; a contact about to slip counts as slipping. All these functions return false if a
+    /// value is not finite.
     bool at_present(const Now& now, const Frame& frame, const Segment& last, Balance& result) {
         const std::vector<double>& departing = now.departing(mechanics_.system(), departing_);
         return at_present({now.t.hi, now.side(), departing}, now, now.mode, frame, last, result);
     }
-    /// The balance at the moment `at` and in `mode`, with the other data of the present.
+    /// Computes the balance at `at` in `mode`; the slopes of belts are those of `now`.
     bool at_present(const Moment& at, const Now& now, const Mode& mode, const Frame& frame, const Segment& last,
                     Balance& result);
     /// The balance at the point x of a stretch; `sampled`, if given, supplies its loads.
@@ -64,7 +64,7 @@ private:
     std::vector<double> belts_, rates_, offsets_, of_group_, lacking_, departing_;
 };
 
-/// A motion near that of a joint at slip 0.
+/// A state near that of a joint at slip 0.
 struct Nearby {
     model::Motion side;         ///< side to which the angle differs
     model::Motion way;          ///< direction of the slip; stuck: slip 0
@@ -76,8 +76,8 @@ struct Nearby {
 /// only its own bodies move, by their weights.
 std::vector<double> slip_alone(const Mechanics& mechanics, Mode mode, std::size_t joint);
 
-/// Returns the moment of this nearby motion, at the smallest differences that survive rounding if they are smaller.
-/// `slip` is from slip_alone(); `y` is storage for its state.
+/// Returns the moment of this nearby state; each difference is at least the smallest one that survives rounding. `slip`
+/// is from slip_alone(); `y` is storage for the state.
 Moment just_beside(const Moment& at, const std::vector<double>& slip, const Nearby& there, std::vector<double>& y);
 
 /// Returns by how much the torque on a sticking joint exceeds the holding limit, and sets the direction of breakaway.

@@ -26,7 +26,7 @@ public:
     }
     /// Adds a break. Returns false if it is already known.
     bool add(double t);
-    bool many() const { return found_.size() >= most_found; }
+    bool has_too_many() const { return found_.size() >= most_found; }
     /// Removes breaks up to time t. If none is left and a load has jumped periodically, adds the next jump before
     /// `end`.
     void pass(double t, double end);
@@ -36,7 +36,7 @@ public:
     /// Turns echoes up to time t into echoes of the next generation. Returns whether there were any.
     bool pass_echoes(double t);
     const std::vector<Echo>& echoes() const { return echoes_; }
-    void go_on_with(std::vector<Echo> echoes) { echoes_ = std::move(echoes); }
+    void set_echoes(std::vector<Echo> echoes) { echoes_ = std::move(echoes); }
 
 private:
     static constexpr std::size_t most_found = 50;

@@ -9,7 +9,7 @@ namespace dinal::motion::engine {
 struct Fading {
     double last = -model::never, gap = model::never, first = 0;
     /// Registers a firing at time t. Returns whether the intervals shrink towards zero.
-    bool after(double t) {
+    bool register_firing(double t) {
         constexpr double next_to_nothing = 1e-5;
         const double now = t - last;
         if (!(now < gap) || gap == model::never) first = now;
@@ -44,17 +44,17 @@ public:
     }
     /// Registers a stretch too short to matter. Returns whether there were too many in a row.
     bool too_many_short() { return ++too_short_ > most_short; }
-    void stretch_of(double length) {
+    void note_length(double length) {
         if (length > 1e-7 * unit_) too_short_ = 0;
     }
     /// Registers that a released joint did not move: its next release needs a clearly larger pull. Returns whether this
     /// margin has grown beyond what rounding explains.
-    static bool too_blunt(Slipping& how, double torques) {
+    static bool raise_margin(Slipping& how, double torques) {
         constexpr double most = 1e-9;  // relative to the torques
         // A freewheel without friction may feel no torque at all.
         const double size = torques + smallest / rounding;
-        how.blunt = std::max(2 * how.blunt, 64 * rounding * size);
-        return how.blunt > most * size;
+        how.margin = std::max(2 * how.margin, 64 * rounding * size);
+        return how.margin > most * size;
     }
 
 private:

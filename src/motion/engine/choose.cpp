@@ -13,7 +13,7 @@ using model::Outcome;
 
 namespace {
 
-// distance to the failure of a function at which a run ends, relative to the pace
+// a run ends this close to the failure of a function, in time units of the motion
 constexpr double near_failure = 1e-9;
 constexpr int most_attempts = 20000;
 constexpr int most_attempts_sampled = 3000;  // if a function of the motion is only known by samples
@@ -25,7 +25,7 @@ constexpr double huge = 1e100;               // beyond this a non-finite value i
 double longest_step(const model::Friction& law, const model::SpeedRange& range, double speed, double first,
                     double second, double C, double I) {
     constexpr double any = std::numeric_limits<double>::infinity();
-    constexpr double steepest = 4;  // limit of a t for exp(-a t) on a polynomial of degree 16
+    constexpr double steepest = 4;  // greatest a t for which a polynomial of degree 16 follows exp(-a t)
     if (range.straight) {
         const double a = (C + range.slope) / I;
         const bool begins = speed == range.from || speed == range.to;
@@ -140,7 +140,7 @@ double Engine::longest_under_friction(const Frame& frame) {
     return longest;
 }
 
-void Engine::again(Flow::Attempt attempt) {
+void Engine::retry(Flow::Attempt attempt) {
     const int most = conditions_->samples() ? most_attempts_sampled : most_attempts;
     if (chatter_.too_many_attempts(now_.t.hi, most)) {
         fail(conditions_->samples() ? Outcome::chattering : Outcome::unresolved);
@@ -156,7 +156,7 @@ void Engine::again(Flow::Attempt attempt) {
         return;
     }
     if (solver_->found_noise(segment_, now_.mode)) return;
-    if (!breaks_.many() && pace_.may_search(now_.t.hi, segment_.h)) {
+    if (!breaks_.has_too_many() && pace_.may_search(now_.t.hi, segment_.h)) {
         const auto found = solver_->found_break(segment_);
         if (found && *found > now_.t.hi && breaks_.add(*found)) {
             if (a_belt_jumps_at(*found)) mechanics_.jumps_at(*found);
@@ -167,7 +167,7 @@ void Engine::again(Flow::Attempt attempt) {
 }
 
 void Pace::shorten(double half, double unresolved, double longest_now) {
-    // multiple of the tolerance: an error up to this also limits the length of the next stretches
+    // an error up to this multiple of the tolerance also limits the length of the next stretches
     constexpr double slightly = 16;
     constexpr int limited_stretches = 12;
     const double factor = unresolved < model::never ? 0.9 * std::pow(unresolved, -1.0 / 16) : 0;

@@ -47,7 +47,7 @@ void Collocation::guess(Segment& s, const Frame& frame) {
 
 /// The initial guess after a smooth stretch: extrapolates accelerations and rates. Returns false if no smooth stretch
 /// precedes.
-bool Collocation::go_on(const Segment& s, const Frame& frame) {
+bool Collocation::extrapolate(const Segment& s, const Frame& frame) {
     constexpr double nearly = 1e-6, longer = 4;
     const bool follows = end_.t == s.start.hi && !s.from_break && end_.groups == frame.bodies;
     if (!follows || !(s.h <= longer * end_.h)) return false;
@@ -127,7 +127,7 @@ Flow::Attempt Collocation::find(Segment& s, const Mode& mode, const Frame& frame
     for (const Slopes slopes : {Slopes::known, Slopes::here, Slopes::none}) {
         if (!evaluate(s, mode, frame, 0, 1, &departing)) return Attempt::failed;
         begin_at_first_node(s, frame);
-        if (slopes == Slopes::known && mechanics_.nonlinear() && go_on(s, frame)) {
+        if (slopes == Slopes::known && mechanics_.nonlinear() && extrapolate(s, frame)) {
             place(s, frame);
         } else {
             guess(s, frame);

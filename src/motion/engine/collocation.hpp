@@ -21,7 +21,7 @@ private:
 
     void place(Segment& segment, const Frame& frame);
     void guess(Segment& segment, const Frame& frame);
-    bool go_on(const Segment& segment, const Frame& frame);
+    bool extrapolate(const Segment& segment, const Frame& frame);
     void remember_end(const Segment& segment, const Frame& frame);
     enum class Slopes { known, here, none };
     Attempt iterate(Segment& segment, const Mode& mode, const Frame& frame, Slopes slopes);
@@ -30,12 +30,12 @@ private:
     void begin_at_first_node(Segment& segment, const Frame& frame);
     struct Residual {
         double left = 0;    ///< greatest relative residual of the equations
-        bool small = true;  ///< whether that of each group and state is negligible, or noise
+        bool small = true;  ///< whether the residual of each group and state is negligible or noise
     };
     Residual find_residual(const Segment& segment, const Frame& frame);
     struct Change {
-        double most = 0;       ///< the greatest, relative to the range of motion
-        bool is_noise = true;  ///< whether that of each group and state is noise
+        double most = 0;       ///< the greatest change, relative to the range of motion
+        bool is_noise = true;  ///< whether the change of each group and state is noise
     };
     Change take_step(double h);
 
@@ -46,7 +46,7 @@ private:
         std::vector<std::array<double, 4>> unknowns{};
     } end_;
     std::vector<double> scales_;    ///< range of motion of each group and state
-    std::vector<double> stalls_;    ///< for each of them: relative changes below this are noise
+    std::vector<double> stalls_;    ///< relative changes of each group and state below this are noise
     std::vector<Nodes> of_groups_;  ///< changes of the groups' velocities
     std::vector<char> placed_;
     Eigen::VectorXd residual_, step_;

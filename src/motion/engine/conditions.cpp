@@ -22,7 +22,7 @@ public:
         Piecewise* function;
         std::size_t condition;
         double within;
-        /// whether its margin at the start exceeds the rounding there, but not the rounding over the stretch
+        /// whether its margin was clear of rounding at the start
         bool blurred;
     };
     /// A condition, its margins at the nodes, their change caused by rounding, and where the stretch ends otherwise.
@@ -37,9 +37,9 @@ public:
     void watch(const Margin& margin) {
         if (!watch(margin, {})) not_finite_.push_back(margin);
     }
-    /// Watches the conditions whose margin is not finite everywhere. The formula of a piece may have no value beyond
-    /// its ends, such as the root of a former |theta|. Such a condition is watched up to the next crossing of another
-    /// one, or as far as it has a value.
+    /// Watches the conditions whose margin is not finite at all nodes: a piece's formula may have no value beyond the
+    /// end of the piece, as sqrt(|theta|), evaluated as sqrt(theta), has none for theta < 0. Such a condition is
+    /// watched up to the first crossing of another one, or as far as its margin is finite.
     void watch_not_finite();
     const std::vector<Crossing>& crossings() const { return crossings_; }
     double earliest() const { return earliest_; }
@@ -103,9 +103,9 @@ void ConditionSearch::watch_not_finite() {
 
 }  // namespace
 
-Conditions::Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit)
+Conditions::Conditions(Mechanics& mechanics, Frames& frames, std::size_t passed, double start, double unit)
     : mechanics_(mechanics),
-      told_(told),
+      passed_(passed),
       unit_(unit),
       samples_(mechanics.samples_the_motion()),
       slides_(mechanics, frames, unit) {
@@ -122,7 +122,7 @@ double Conditions::belt_of(std::size_t body, const Moment& at) const {
     return mechanics_.has_belt(body) ? mechanics_.belt(body, at.t, at.side) : 0;
 }
 
-/// Returns the least slip of a body against its belt that its velocity can have.
+/// Returns the smallest slip of a body on its belt that its velocity can represent.
 double Conditions::least_slip(std::size_t body, const Moment& at) const {
     return std::max(std::numeric_limits<double>::min(), 4 * rounding * std::fabs(belt_of(body, at)));
 }
@@ -130,8 +130,8 @@ double Conditions::least_slip(std::size_t body, const Moment& at) const {
 void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last) {
     if (!any_) return;
     if (slides_.any()) slides_.follow(mode);
-    // The state is taken slightly later if a velocity leaves 0, and a condition may have lost small digits, such as
-    // those of floor(10 + velocity).
+    // If a velocity leaves 0, the state is taken slightly later, because a condition such as floor(10 + velocity) loses
+    // small digits.
     constexpr double little_later = 1e-9;
     const std::size_t n = mechanics_.bodies();
     const double soon = at.t + little_later * unit_;
@@ -148,7 +148,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     }
     std::uint64_t again = forgotten_ ? ~std::uint64_t{0} : 0, of_leaving = 0;
     bool starts_with_belt = false;
-    std::vector<double> rates;  // of y, if other bodies or belts move beside one that leaves
+    std::vector<double> rates;  // dy/dt; empty unless other bodies or belts move while one leaves
     const std::size_t joints = mechanics_.joints();
     standing_.resize(joints);
     for (std::size_t j = 0; j < joints; ++j) {
@@ -156,9 +156,9 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
         const bool leaves = mode.rubs[j] != 0 && how.leaving && mode.leans[j] == 0;
         const int now = leaves ? model::sign_of(how.way) > 0 ? 2 : 3 : mode.holds(j) || how.riding ? 1 : 0;
         const model::Joint& joint = mechanics_.system().joints[j];
-        // Where bodies begin to move beside others or on belts, their rates decide.
+        // If a body begins to move while others or belts move, the rates decide its conditions.
         if (leaves && (n > 1 || mechanics_.has_belt(j)) && rates.empty()) rates = slides_.free_rates(mode, at);
-        bool clear = j < n;  // a link that has just reached its limit has no rate yet, and is not decided anew
+        bool clear = j < n;  // a link that has just reached its limit has no rate yet and is not decided again
         if (leaves && !clear) {
             constexpr double clearly = 1e-6;
             sizes_.find(mechanics_, last, at);
@@ -190,21 +190,21 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     for (std::size_t i = 0; i < n && !rates.empty(); ++i) {
         if (standing_[i] == 0) y[n + i] += little_later * unit_ * rates[n + i];
     }
-    mechanics_.let_laws_act(mode);
+    mechanics_.set_law_directions(mode);
     mechanics_.for_each_piecewise(at.t, [&](Piecewise& function) {
         // A condition that was just crossed at standstill, and so lets the velocity leave, keeps its decision.
         const bool just_crossed = has_just_crossed(function, of_leaving, at.t);
         const bool known = !forgotten_ && slides_.just_left(function, at.t);
-        const std::uint64_t asked = known ? 0 : just_crossed ? again : again | of_leaving;
-        if (of_leaving != 0 && !forgotten_ && !starts_with_belt && decide_clearly(function, at, asked)) return;
-        function.decide({t, at.side, y}, asked);
-        if (asked != 0 && !forgotten_) decide_by_rate(function, at, mode, asked);
+        const std::uint64_t selected = known ? 0 : just_crossed ? again : again | of_leaving;
+        if (of_leaving != 0 && !forgotten_ && !starts_with_belt && decide_clearly(function, at, selected)) return;
+        function.decide({t, at.side, y}, selected);
+        if (selected != 0 && !forgotten_) decide_by_rate(function, at, mode, selected);
     });
     forgotten_ = false;
 }
 
-/// Returns how far the margins change if the time changes by `later`, and each variable of the state by a few ulps and
-/// by its entry in `more`, which may be empty.
+/// Returns the change of each margin if the time changes by `later` and each variable of the state by a few ulps plus
+/// its entry in `more`, which may be empty.
 std::vector<double> Conditions::rounding_of(const Piecewise& function, const Moment& at,
                                             const std::vector<double>& margins, double later,
                                             const std::vector<double>& more) const {
@@ -216,7 +216,7 @@ std::vector<double> Conditions::rounding_of(const Piecewise& function, const Mom
             if (is_known(change)) rounded[c] += change;
         }
     };
-    for (std::size_t k = 0; k < told_; ++k) {
+    for (std::size_t k = 0; k < passed_; ++k) {
         y[k] = at.y[k] * (1 + 4 * rounding) + (more.empty() ? 0 : more[k]);
         add(at.t);
         y[k] = at.y[k];
@@ -226,22 +226,22 @@ std::vector<double> Conditions::rounding_of(const Piecewise& function, const Mom
 }
 
 /// Decides the conditions at this moment. Returns false if the margin of a selected one may be zero by rounding.
-bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked) {
+bool Conditions::decide_clearly(Piecewise& function, const Moment& at, std::uint64_t selected) {
     if (function.is_friction() || function.is_spring() || function.slides()) return false;
-    function.decide(at, asked);
+    function.decide(at, selected);
     std::vector<double> margins;
     function.margins(at, margins);
     const std::vector<double> rounded =
         rounding_of(function, at, margins, 4 * rounding * (std::fabs(at.t) + unit_), {});
     for (std::size_t c = 0; c < margins.size(); ++c) {
-        const bool is_asked = (function.conditions()[c].of & asked) != 0;
-        if (is_asked && !(std::fabs(margins[c]) > 16 * rounded[c])) return false;
+        const bool is_selected = (function.conditions()[c].of & selected) != 0;
+        if (is_selected && !(std::fabs(margins[c]) > 16 * rounded[c])) return false;
     }
     return true;
 }
 
-/// Decides conditions anew that depend on a velocity that a contact holds or just lets go, if they pass zero right now
-/// for the held velocity: by their values a little later.
+/// Decides conditions on a velocity that a contact holds or has just released. If a margin passes zero right now, its
+/// value slightly later counts.
 void Conditions::decide_by_rate(Piecewise& function, const Moment& at, const Mode& mode, std::uint64_t again) {
     constexpr double little_later = 1e-9, next_to_none = 1e-3;
     if (function.is_friction() || function.is_spring() || function.slides() || function.conditions().empty()) return;
@@ -288,11 +288,12 @@ bool Conditions::stay_clear(const Ranges& ranges, const Moment& from) {
 
 void Conditions::watch(const Segment& segment, const std::vector<double>& begin, double now, Ending& ending) {
     ConditionSearch search(segment);
-    // Loads that jump at a place which another body passes at the instant of a release decide about the release.
+    // If a load jumps because another body passes a place at the instant of a release, that jump decides about the
+    // release.
     const double beside_release = ending.by == By::release ? ending.x + one_instant : ending.before();
     std::vector<double> y, margins;
     const Moment start{segment.times[0], segment.side(0), begin};
-    // A slide holds the motion but for rounding of the torques.
+    // A slide keeps the motion on its surface to the rounding of the torques.
     const std::size_t n = mechanics_.bodies();
     std::vector<double> held;
     if (slides_.any()) {
@@ -348,7 +349,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
 }
 
 /// Returns whether a condition on angles was just crossed and crosses back at once. A jump of torques cannot turn the
-/// motion so fast, so that the crossing may be rounding of a long stretch.
+/// motion so fast, so the crossing may be rounding of a long stretch.
 bool Conditions::comes_back(const Piecewise& function, std::size_t condition, double now) const {
     const auto [step, beyond, of] = function.conditions()[condition];
     const bool of_place = is_of_place(function, of);
@@ -363,7 +364,8 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
     Crossed crossed;
     bool all_small = true;
     const Moment here = now.here();
-    // A surface that is met at the same instant counts first: a slide along it may keep the shares within their limits.
+    // If another surface is met at the same instant, it counts first: a slide along it may keep the shares within their
+    // limits.
     const bool meets = std::any_of(ending.conditions.begin(), ending.conditions.end(),
                                    [](const auto& crossing) { return !crossing.first->slides(); });
     for (const auto& [function, condition] : ending.conditions) {

@@ -20,8 +20,8 @@ namespace dinal::motion::engine {
 /// Keeps each function on one smooth piece until a condition changes. Changes no state and reports no event.
 class Conditions {
 public:
-    /// `told` is the number of values of the state passed to functions; `unit` is the time scale of the motion.
-    Conditions(Mechanics& mechanics, Frames& frames, std::size_t told, double start, double unit);
+    /// `passed` is the number of values of the state passed to functions; `unit` is the time scale of the motion.
+    Conditions(Mechanics& mechanics, Frames& frames, std::size_t passed, double start, double unit);
 
     bool any() const { return any_; }
     /// Returns whether a function of the motion has unknown pieces, so that it may jump anywhere.
@@ -33,8 +33,8 @@ public:
     }
     /// Discards all decisions, for use after the state has jumped.
     void forget() { forgotten_ = true, cease(); }
-    /// Discards all decisions at a break, unless a condition passes zero there, whose decision would be rounding.
-    /// Slides go on if both sides still drive the motion back.
+    /// Discards all decisions at a break, unless a condition passes zero there: its decision would be rounding. Slides
+    /// continue if both sides still drive the motion back.
     void pass_break(Now& now) {
         if (now.t.hi == crossing_at_) return;
         forgotten_ = true;
@@ -55,7 +55,7 @@ public:
 
     struct Crossed {
         bool jumps = false;     ///< whether a function has jumped
-        std::size_t count = 0;  ///< number of functions that jumped, without friction laws
+        std::size_t count = 0;  ///< number of functions that jumped, not counting friction laws
         Slides::Changes changes{};
         double work = 0;  ///< work done by the first sliding load when the velocities were moved onto the condition
         bool endless = false;
@@ -93,7 +93,7 @@ private:
     [[nodiscard]] std::vector<double> rounding_of(const Piecewise& function, const Moment& at,
                                                   const std::vector<double>& margins, double later,
                                                   const std::vector<double>& more) const;
-    [[nodiscard]] bool decide_clearly(Piecewise& function, const Moment& at, std::uint64_t asked);
+    [[nodiscard]] bool decide_clearly(Piecewise& function, const Moment& at, std::uint64_t selected);
     void decide_by_rate(Piecewise& function, const Moment& at, const Mode& mode, std::uint64_t again);
     /// Returns whether a condition with these arguments depends on angles and time only.
     bool is_of_place(const Piecewise& function, std::uint64_t arguments) const {
@@ -107,7 +107,7 @@ private:
     }
 
     Mechanics& mechanics_;
-    std::size_t told_;
+    std::size_t passed_;
     double unit_;
     bool any_ = false, samples_, forgotten_ = true;
     double crossing_at_ = -model::never;

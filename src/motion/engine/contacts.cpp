@@ -52,7 +52,7 @@ void Projection::apply(Now& now, const Frame& frame, Side when) {
     for (const Frame::Edge& edge : frame.edges) {
         if (!now.mode.keeps_place(edge.joint)) continue;
         const model::Joint& joint = system.joints[edge.joint];
-        if (edge.joint >= told_) {
+        if (edge.joint >= own_joints_) {
             if (!system.bodies[joint.first()].moved->by_angle) continue;
             now.rigid_at[edge.joint] = angle_given(joint.first(), now.t.hi, when);
         }

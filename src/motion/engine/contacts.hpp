@@ -15,7 +15,7 @@ struct Contacts {
         model::Motion slid = model::Motion::stuck;
         double pull = 0;
     };
-    struct Of {
+    struct Contact {
         model::Motion arrived = model::Motion::stuck;  ///< direction of sliding until now; stuck: it did not slide
         Arrival arrival = {};
         /// the stick event of a creep, reported only if nothing moves the joint before the end
@@ -27,7 +27,7 @@ struct Contacts {
         int load_sign = 0;         ///< sign of its normal load; 0: unknown
         int bristle_sign = 0;      ///< sign of the slip of its bristles; 0: unknown
     };
-    std::vector<Of> of;                    ///< one for each joint
+    std::vector<Contact> of;               ///< one for each joint
     double size_at_stop = 0;               ///< magnitude of the torques when a joint last reached slip 0
     std::vector<std::size_t> last_full{};  ///< joints of loops that reached their limits last, at one instant
     double last_full_at = -model::never;
@@ -39,16 +39,16 @@ struct Contacts {
 /// Makes the velocities of bodies that stick together exactly equal, and puts joints at a wall exactly onto it.
 class Projection {
 public:
-    /// The joints from index `told` on impose prescribed motions.
-    Projection(const Mechanics& mechanics, std::size_t told)
-        : mechanics_(mechanics), told_(told), offsets_(mechanics.bodies()) {}
+    /// The joints from index `own_joints` on impose prescribed motions.
+    Projection(const Mechanics& mechanics, std::size_t own_joints)
+        : mechanics_(mechanics), own_joints_(own_joints), offsets_(mechanics.bodies()) {}
     void apply(Now& now, const Frame& frame, Side when);
 
 private:
     double angle_given(std::size_t body, double t, Side when) const;
 
     const Mechanics& mechanics_;
-    std::size_t told_;
+    std::size_t own_joints_;
     std::vector<double> belts_, offsets_, momentum_, first_;
     std::vector<char> seen_, alike_;
 };

@@ -56,7 +56,7 @@ public:
     /// Values up to `rounded` count as zero.
     Watched(const Nodes& values, const F& exact, double rounded = 0)
         : Watched(values, exact, rounded, cheb::fit(values), 0) {}
-    /// The same with a given series that has slightly fewer digits than the function.
+    /// Uses a given series, which is slightly less accurate than the function.
     Watched(const Nodes& values, const F& exact, double rounded, const Series& series)
         : Watched(values, exact, rounded, series, 1e-13) {}
     /// The first x after `from` at which the value leaves this half; an unknown half is set from the nodes.
@@ -99,7 +99,8 @@ private:
         floor_ = std::max(few * rounding * size_, rounded);
         smooth_ = is_smooth();
     }
-    /// Returns whether the series has decayed, or still falls steeply at its end; that of rounding stays level.
+    /// Returns whether the series has decayed, or still falls steeply at its end; a series of rounding errors stays
+    /// level.
     bool is_smooth() const {
         constexpr double decayed = 1e-9, decaying = 1e-6, steeply = 64;
         const double tail = cheb::tail(series_);
@@ -200,7 +201,8 @@ private:
 
     const Nodes& values_;
     const F& exact_;
-    double rounded_, usual_;  ///< rounding of the values if greater than 0, and in general
+    /// values up to `rounded_` count as zero; within `usual_` of a zero of the series, the function decides
+    double rounded_, usual_;
     Series series_;
     double size_ = 0, floor_ = 0;
     bool smooth_ = false;

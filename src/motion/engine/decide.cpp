@@ -18,7 +18,7 @@ using model::Motion;
 constexpr double no_motion = 1e-9;      // relative to the acceleration that the torques at a joint could cause
 constexpr double near_limit = 1e-10;    // relative to the torques; the slopes of belts are no more accurate
 constexpr double clearly_jumps = 1e-9;  // relative to the torques
-constexpr double little_more = 1e-7;    // relative to the torques; a joint at its limit will soon lack this much
+constexpr double little_more = 1e-7;    // relative to the torques; limits of released joints are lowered by this much
 
 /// The work of one decision.
 class Decider {
@@ -28,15 +28,15 @@ public:
         : by_(by),
           mechanics_(by.mechanics),
           released_(cause.released),
-          told_(cause.told),
+          reports_(cause.reports),
           made_(made),
-          asked_(by.room.asked),
+          cases_(by.room.cases),
           found_(by.room.balance) {}
     /// Decides. Returns false if a value is not finite.
     bool decide();
 
 private:
-    using Asked = DecisionRoom::Asked;
+    using Case = DecisionRoom::Case;
     struct Worst {
         std::size_t joint;
         Motion way;
@@ -57,7 +57,8 @@ private:
     std::optional<Worst> farthest_beyond();
     double excess_on_both_sides(std::size_t joint, double otherwise, Motion& towards, bool may_go);
     [[nodiscard]] bool stands(std::size_t joint) const;
-    /// A motion beside slip 0: the velocity of each body at slip 1, and the slip; none: the angle differs instead.
+    /// A state beside slip 0: the velocity of each body at slip 1, and the slip; without a slip the angle differs
+    /// instead.
     struct Probe {
         const std::vector<double>& slip;
         std::optional<double> speed;
@@ -93,27 +94,27 @@ private:
         projected_ = &frame;
     }
     void report_event(EventKind kind, std::size_t joint) {
-        made_.told.push_back({.event = event_at(mechanics_, now(), kind, joint)});
+        made_.reported.push_back({.event = event_at(mechanics_, now(), kind, joint)});
     }
 
     const Evaluation& by_;
     const Mechanics& mechanics_;
     std::optional<Cause::Released> released_;
-    bool told_;
+    bool reports_;
     Decision& made_;
-    std::vector<Asked>& asked_;
+    std::vector<Case>& cases_;
     Balance& found_;
     const Frame* projected_ = nullptr;  ///< the frame to which velocities were projected last
     std::vector<std::size_t> full_{};   ///< joints that have reached their limits at this instant
     bool found_at_stop_ = false;        ///< whether found_ is the balance at the stop of the only joint, which sticks
-    double between_ = 0;                ///< rounding of the released joint's torque between two doubles of the time
+    double between_ = 0;                ///< rounding of the released joint's torque due to the rounding of the time
 };
 
 bool Decider::decide() {
     find_joints_at_rest();
     by_.room.entered = mode().friction;
     found_.holding.assign(joints(), 0);
-    const bool free = std::none_of(asked_.begin(), asked_.end(), [](const Asked& one) { return one.asked; });
+    const bool free = std::none_of(cases_.begin(), cases_.end(), [](const Case& one) { return one.at_rest; });
     const Frame& all_hold = frame();
     if (free && all_hold.edges.empty()) return true;
     project(all_hold);
@@ -127,8 +128,8 @@ bool Decider::decide() {
         if (loops) memory().last_full_at = now().t.hi, memory().last_full = full_;
     }
     if (loops && !all_used && !share_loops()) return false;
-    for (std::size_t j = 0; j < joints() && told_; ++j) {
-        if (asked_[j].before.slid != Motion::stuck) settle_at_limit(j);
+    for (std::size_t j = 0; j < joints() && reports_; ++j) {
+        if (cases_[j].before.slid != Motion::stuck) settle_at_limit(j);
     }
     if (released_) {
         const Series& series = by_.last.holding_series[released_->joint];
@@ -142,9 +143,9 @@ bool Decider::decide() {
 
 /// Finds the joints at slip 0. Initially all of them stick.
 void Decider::find_joints_at_rest() {
-    asked_.assign(joints(), {});
+    cases_.assign(joints(), {});
     for (std::size_t j = 0; j < joints(); ++j) {
-        asked_[j].leant = mode().leans[j];
+        cases_[j].leant = mode().leans[j];
         if (!now().rubs(j)) continue;
         Slipping& how = mode().friction[j];
         Motion& arrived_as = memory().of[j].arrived;
@@ -161,7 +162,7 @@ void Decider::find_joints_at_rest() {
         }
         const bool arrived = arrived_as != Motion::stuck;
         if (how.way != Motion::stuck && !how.riding && !arrived && !how.leaving) continue;
-        asked_[j] = {.asked = true,
+        cases_[j] = {.at_rest = true,
                      .before = {.slid = arrived ? arrived_as : Motion::stuck,
                                 .held = !arrived && !(how.leaving && !how.riding),
                                 .creeps = how.creeps},
@@ -183,8 +184,8 @@ bool Decider::settle(bool all_used) {
         const bool found = std::exchange(found_at_stop_, false);
         if (!found && !by_.balances.at_present(now(), present, by_.last, found_)) return false;
         for (std::size_t j = 0; j < joints(); ++j) {
-            if (memory().of[j].crept && asked_[j].before.slid != Motion::stuck && mode().holds(j))
-                creep(j, asked_[j].before.slid, -found_.holding[j]);
+            if (memory().of[j].crept && cases_[j].before.slid != Motion::stuck && mode().holds(j))
+                creep(j, cases_[j].before.slid, -found_.holding[j]);
         }
         const std::optional<Worst> worst = farthest_beyond();
         if (!made_.good) return false;
@@ -208,7 +209,7 @@ bool Decider::ride_along(const Frame& frame) {
         const bool slides = now().rubs(j) && how.way != Motion::stuck && !how.riding && mode().leans[j] == 0;
         if (slides && together && how.leaving) how.riding = true, how.leaving = false;
         if (!slides || !together || how.riding || belt(j) != 0) continue;
-        asked_[j].before.slid = how.way, asked_[j].asked = true, grown = true;
+        cases_[j].before.slid = how.way, cases_[j].at_rest = true, grown = true;
         how.way = Motion::stuck;
     }
     return grown;
@@ -223,7 +224,7 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
         Motion towards = Motion::stuck;
         mode().friction[j].driven_back = false;
         double beyond = excess(mechanics_, j, found_, mode(), now().here(), towards);
-        const bool own = released_ && released_->joint == j, may_go = own || asked_[j].let_go != Motion::stuck;
+        const bool own = released_ && released_->joint == j, may_go = own || cases_[j].let_go != Motion::stuck;
         if (by_.balances.has_feedback() && (beyond > 0 || may_go || mode().friction[j].beside > 0))
             beyond = excess_on_both_sides(j, beyond, towards, may_go);
         if (std::isnan(beyond)) {
@@ -232,7 +233,7 @@ std::optional<Decider::Worst> Decider::farthest_beyond() {
         }
         const double rounded = mechanics_.bodies() > 1 ? 8 * rounding * size(j) : 0;
         if (may_go && std::fabs(beyond) <= near_limit * size(j) + 2 * found_.blurred + between_) {
-            worst = {j, own ? released_->way : asked_[j].let_go}, most_beyond = model::never;
+            worst = {j, own ? released_->way : cases_[j].let_go}, most_beyond = model::never;
             continue;
         }
         if (!(beyond > rounded)) continue;
@@ -311,15 +312,15 @@ std::optional<Decider::BothSides> Decider::both_sides(std::size_t j, const Probe
 void Decider::let_go(const Worst& worst) {
     const auto [j, way] = worst;
     if (released_ && released_->joint == j) released_.reset();
-    asked_[j].pull = -found_.holding[j];
-    asked_[j].let_go = Motion::stuck;
+    cases_[j].pull = -found_.holding[j];
+    cases_[j].let_go = Motion::stuck;
     Slipping& how = mode().friction[j];
     if (how.creeps != Motion::stuck && way != how.creeps) {
         how.creeps = Motion::stuck;
-        if (told_) report_event(EventKind::stick, j);
+        if (reports_) report_event(EventKind::stick, j);
         return;
     }
-    if (how.creeps != Motion::stuck) asked_[j].before.held = false;
+    if (how.creeps != Motion::stuck) cases_[j].before.held = false;
     if (mode().leans[j] == 0) {
         slide(j, way, true);
         // In a loop other joints may still hold while this one is at its limit.
@@ -339,23 +340,23 @@ Decider::Ways Decider::take_back() {
     bool goes_round = false;
     for (std::size_t j = 0; j < joints(); ++j) {
         Slipping& how = mode().friction[j];
-        const bool lifted = asked_[j].leant != 0 && mode().leans[j] == 0;
+        const bool lifted = cases_[j].leant != 0 && mode().leans[j] == 0;
         if (!how.leaving && !lifted) continue;
         const Joint& joint = joint_at(j);
         double rate = joint.sum(found_.accelerations);
         const double I = mechanics_.system().bodies[joint.first()].inertia / std::fabs(joint.of.front().by);
         const double nothing = 64 * rounding * size(j) + between_ + smallest;
-        goes_round = goes_round || (lifted && asked_[j].leant * rate * I > nothing);
+        goes_round = goes_round || (lifted && cases_[j].leant * rate * I > nothing);
         if (mechanics_.has_belt(j)) rate -= now().belt_slopes[j].rate;
         // A joint that was let go at this instant without leaving, and has not just reached its limit, must leave
         // clearly.
-        const double least = how.blunt > 0 && full_.empty() ? nothing : -nothing;
+        const double least = how.margin > 0 && full_.empty() ? nothing : -nothing;
         if (!how.leaving || model::sign_of(how.way) * rate * I >= least) continue;
-        if (asked_[j].taken_back) {
+        if (cases_[j].taken_back) {
             goes_round = true;
             continue;
         }
-        asked_[j].taken_back = true;
+        cases_[j].taken_back = true;
         how.way = Motion::stuck, how.leaving = false;
         return Ways::changed;
     }
@@ -364,13 +365,13 @@ Decider::Ways Decider::take_back() {
 
 void Decider::report() {
     for (std::size_t j = 0; j < joints(); ++j) {
-        if (asked_[j].leant != 0 || mode().leans[j] != 0) {
-            if (told_ && memory().of[j].leaned && mode().leans[j] == 0) report_event(EventKind::slip, j);
+        if (cases_[j].leant != 0 || mode().leans[j] != 0) {
+            if (reports_ && memory().of[j].leaned && mode().leans[j] == 0) report_event(EventKind::slip, j);
             if (mode().leans[j] == 0) memory().of[j].leaned = false;
             memory().of[j].arrived = Motion::stuck;
-        } else if (asked_[j].asked) {
+        } else if (cases_[j].at_rest) {
             memory().of[j].crept = false;
-            if (told_ && mode().friction[j].creeps == Motion::stuck) report(j);
+            if (reports_ && mode().friction[j].creeps == Motion::stuck) report(j);
             memory().of[j].arrived = Motion::stuck;
         }
     }
@@ -381,26 +382,26 @@ void Decider::report(std::size_t j) {
     const Slipping& how = mode().friction[j];
     const Motion way = how.riding ? Motion::stuck : how.way;
     Contacts::Arrival& arrival = memory().of[j].arrival;
-    const Asked& asked = asked_[j];
-    const auto kind = contact::event_of(asked.before, way);
+    const Case& own = cases_[j];
+    const auto kind = contact::event_of(own.before, way);
     if (!kind) return;
     report_event(*kind, j);
-    Reported& told = made_.told.back();
+    Reported& event = made_.reported.back();
     if (*kind == EventKind::slip) {
-        told.slid = arrival.slid, told.way = way;
-        told.off = std::fabs(asked.pull - arrival.pull), told.size = size(j);
-    } else if (*kind == EventKind::stick && asked.before.slid != Motion::stuck) {
-        arrival = {asked.before.slid, -found_.holding[j]};
+        event.slid = arrival.slid, event.way = way;
+        event.off = std::fabs(own.pull - arrival.pull), event.size = size(j);
+    } else if (*kind == EventKind::stick && own.before.slid != Motion::stuck) {
+        arrival = {own.before.slid, -found_.holding[j]};
     } else if (*kind == EventKind::stick) {
-        told.holds_again = true;
+        event.holds_again = true;
     }
 }
 
-/// Returns whether other joints, or surfaces on which loads jump, hold its bodies together, so that it cannot slip. Two
-/// joints held by belts of different velocities do slip.
+/// Returns whether other joints, or surfaces on which loads jump, hold the joint's bodies together, so that it cannot
+/// slip. Two joints held by belts of different velocities do slip.
 bool Decider::moves_as_one(std::size_t joint, const Frame& frame) const {
     const Joint& own = joint_at(joint);
-    if (!frame.keeps(joint)) return by_.slides.keep_slip(joint, mode(), frame, now().here());
+    if (!frame.keeps(joint)) return by_.slides.holds_slip(joint, mode(), frame, now().here());
     if (!mechanics_.has_belts()) return true;
     const auto alike = [&](const std::vector<double>& of_joints, double nearly) {
         std::vector<double> offsets;
@@ -446,7 +447,7 @@ void Decider::creep(std::size_t joint, Motion way, double pull) {
 struct Decider::Box {
     Eigen::MatrixXd G;
     Eigen::VectorXd slope, low, high;
-    std::vector<std::array<double, 2>> driven_back;  ///< by loads that jump at slip 0, forward and backward
+    std::vector<std::array<double, 2>> driven_back;  ///< result of driven_back() for each joint
 };
 
 /// Returns the torques with which loads that jump at slip 0 drive a joint at standstill back when it slips forward and
@@ -482,9 +483,9 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
         for (const auto& [body, by] : joint_at(j).of) D(static_cast<Eigen::Index>(body), c) = by;
         const bool sticks = now().rubs(j) && mode().friction[j].way == Motion::stuck;
         constexpr double wall = 1e30;
-        const double blunt = mode().friction[j].blunt;
-        box.low(c) = -blunt - (sticks ? mechanics_.holding(j, Motion::forward, now().here()) : 0);
-        box.high(c) = std::min(wall, blunt + (sticks ? mechanics_.holding(j, Motion::backward, now().here()) : 0));
+        const double margin = mode().friction[j].margin;
+        box.low(c) = -margin - (sticks ? mechanics_.holding(j, Motion::forward, now().here()) : 0);
+        box.high(c) = std::min(wall, margin + (sticks ? mechanics_.holding(j, Motion::backward, now().here()) : 0));
         box.driven_back.push_back(driven_back(j, found));
         box.low(c) -= box.driven_back.back()[0], box.high(c) += box.driven_back.back()[1];
         if (mode().leans[j] > 0 || mode().rigid[j] != 0) box.low(c) = -wall;
@@ -503,14 +504,15 @@ bool Decider::box_of(const std::vector<std::size_t>& held, Box& box) {
     return true;
 }
 
-/// Decides all joints at slip 0 at once, if deciding one after another cycles. Sliding joints then have the sliding
-/// instead of the holding torque, and the problem is solved again. The limits of released joints are lowered slightly.
+/// Decides all joints at slip 0 together, for use if deciding one after another cycles. Joints that turn out to slide
+/// get their sliding torque as limit, and the problem is solved again. The limits of released joints are lowered
+/// slightly.
 bool Decider::decide_together() {
     mode().friction = by_.room.entered;
-    for (std::size_t j = 0; j < joints(); ++j) mode().leans[j] = asked_[j].leant;
+    for (std::size_t j = 0; j < joints(); ++j) mode().leans[j] = cases_[j].leant;
     std::vector<std::size_t> held;
     for (std::size_t j = 0; j < joints(); ++j) {
-        if (asked_[j].asked || mode().keeps_place(j)) held.push_back(j);
+        if (cases_[j].at_rest || mode().keeps_place(j)) held.push_back(j);
     }
     Box box;
     if (!box_of(held, box)) return false;
@@ -586,8 +588,8 @@ bool Decider::share_loops() {
         if (full >= 0 && torque(full) <= lower(full)) torque(full) = box.low(full);
         if (full >= 0 && torque(full) >= higher(full)) torque(full) = box.high(full);
     };
-    // The released joint rides from now on, and the others take the rest of the torque. Others may be at their
-    // limit, too: the first attempt asks for a little more than the rest, which shows whether they can take it.
+    // The released joint rides from now on, and the others take the rest of the torque. They may be at their limits as
+    // well: the first attempt asks for slightly more than the rest, which shows whether they can take it.
     share(little_more);
     if (!still) share(64 * rounding);
     for (Eigen::Index c = 0; c < torque.size(); ++c) {
@@ -605,8 +607,8 @@ bool Decider::share_loops() {
 }  // namespace
 
 Decision decide(const Evaluation& by, Now&& now, Contacts&& contacts, const Cause& cause) {
-    Decision made{.now = std::move(now), .contacts = std::move(contacts), .told = std::move(by.room.told)};
-    made.told.clear();
+    Decision made{.now = std::move(now), .contacts = std::move(contacts), .reported = std::move(by.room.reported)};
+    made.reported.clear();
     made.good = Decider(by, cause, made).decide() && made.good;
     return made;
 }

@@ -19,28 +19,29 @@ struct Reported {
     model::Event event;
     /// whether a released joint sticks again, which cancels its slip event of the same instant
     bool holds_again = false;
-    model::Motion slid = model::Motion::stuck;  ///< for a slip: direction of sliding before the stick; stuck: none
-    model::Motion way = model::Motion::stuck;   ///< for a slip: its direction
+    /// for a slip: direction of sliding before the stick; stuck: it did not slide
+    model::Motion slid = model::Motion::stuck;
+    model::Motion way = model::Motion::stuck;  ///< for a slip: its direction
     /// for a slip: change of the pull since the stick, and magnitude of the torques
     double off = 0, size = 0;
 };
 
 /// Storage for decisions, to avoid repeated allocation.
 struct DecisionRoom {
-    /// What a decision knows about one joint.
-    struct Asked {
-        bool asked = false;  ///< whether the joint is at slip 0
+    /// The data of a decision about one joint.
+    struct Case {
+        bool at_rest = false;  ///< whether the joint is at slip 0
         bool taken_back = false;
         contact::Before before = {};
         model::Motion let_go = model::Motion::stuck;  ///< direction of a joint that reached its limit at this instant
         int leant = 0;
         double pull = 0;  ///< the pull at its release
     };
-    std::vector<Asked> asked;
+    std::vector<Case> cases;
     std::vector<Slipping> entered;  ///< friction at the start of the decision
     TorqueSizes sizes;              ///< torques at the start of the decision
     Balance balance;
-    std::vector<Reported> told;
+    std::vector<Reported> reported;
 };
 
 /// The parts of a run that a decision uses. None of them changes the motion.
@@ -62,14 +63,14 @@ struct Cause {
         model::Motion way;
     };
     std::optional<Released> released = {};
-    bool told = true;  ///< whether changes are reported as events; false at the start
+    bool reports = true;  ///< whether changes are reported as events; false at the start
 };
 
 struct Decision {
     bool good = true;  ///< whether all evaluated values are finite
     Now now;           ///< the new modes and velocities
     Contacts contacts;
-    std::vector<Reported> told;
+    std::vector<Reported> reported;
 };
 
 /// Decides about all joints at slip 0. All joints start as sticking; the one that exceeds its limit the most is

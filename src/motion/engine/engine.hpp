@@ -48,10 +48,10 @@ struct Pace {
     void shorten(double half, double unresolved, double longest_now);
     /// Lengthens the next stretch by `factor` after a resolved one, up to `longest_now`.
     void lengthen(double half, double factor, double longest_now);
-    /// Repeats the present stretch with half length `part`, and remembers `half` for later.
+    /// Repeats the present stretch with half length `part`, and keeps `half` for later.
     void make_again(double part, double half) { h = part, whole_ = std::max(whole_, half); }
     /// Returns to the remembered length.
-    void go_on() { h = std::max(h, std::exchange(whole_, 0)); }
+    void resume_length() { h = std::max(h, std::exchange(whole_, 0)); }
 
 private:
     double searched_from_ = model::never, searched_half_ = 0;
@@ -84,7 +84,7 @@ private:
     bool end_at(double x, const Frame& frame, SampledLoads& sampled);
     bool arrive(double x, bool whole);
     bool sample_controllers();
-    void throw_along();
+    void align_rigid_velocities();
     bool decide_after_break();
     void go_to(double x);
     void find_belt_slopes(std::optional<double> x);
@@ -97,10 +97,10 @@ private:
     double longest_under_friction(const Frame& frame);
     double next_break() const;
     double until_wall(const Frame& frame);
-    void again(Flow::Attempt attempt);
+    void retry(Flow::Attempt attempt);
 
     // The end (finish.cpp).
-    bool last_instant();
+    bool handle_events_at_end();
     void finish();
     void rows_at_end(SampledLoads& sampled);
     [[nodiscard]] std::optional<model::Outcome> at_rest();
@@ -114,7 +114,7 @@ private:
     bool release(const Ending& ending);
     bool meet_stop(const Ending& ending);
     bool turn_slider(const Ending& ending);
-    bool decide(bool told, std::optional<Cause::Released> released = {});
+    bool decide(bool reports, std::optional<Cause::Released> released = {});
     bool nothing_presses(std::size_t joint) const;
     bool open_and_close();
     enum class Because { impact, act, belt };
@@ -151,9 +151,9 @@ private:
     [[nodiscard]] bool is_driven(std::size_t joint, const Impulses::Thrown& thrown) const;
     [[nodiscard]] std::vector<char> stop_row(std::size_t joint, int wall, bool fades);
     void leave_walls(const std::vector<char>& stopped);
-    bool act_all(const std::vector<std::size_t>& told);
-    bool act(std::size_t event, const std::vector<std::size_t>& told);
-    void see_flight();
+    bool act_all(const std::vector<std::size_t>& events);
+    bool act(std::size_t event, const std::vector<std::size_t>& events);
+    void shorten_for_flight();
     double energy_at(std::size_t joint, const std::vector<double>& y) const;
 
     bool fail(model::Outcome outcome) {
@@ -180,7 +180,7 @@ private:
     // The motion.
     const Request& problem_;
     Run& result_;
-    Asking asking_;
+    CallConvention convention_;
     Mechanics mechanics_;
     Now now_;
     Contacts contacts_;
@@ -204,7 +204,7 @@ private:
     TorqueSizes sizes_;
     struct {
         std::vector<double> departing;
-        std::vector<int> leant;  ///< before the decision
+        std::vector<int> leant;  ///< walls and friction before a release
         std::vector<Slipping> slid;
         struct {
             std::vector<double> greatest_pull, lacking, held, belts, loads, torques;

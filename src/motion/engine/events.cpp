@@ -53,7 +53,7 @@ bool Engine::handle(const Ending& ending) {
 
 /// Handles a change of conditions in functions that are read.
 bool Engine::cross(const Ending& ending) {
-    pace_.go_on();
+    pace_.resume_length();
     const Conditions::Crossed crossed = conditions_->cross(ending, now_, chatter_);
     result_.jumps += crossed.count;
     // A motion that crosses a condition again and again does so at similar intervals.
@@ -72,7 +72,7 @@ bool Engine::cross(const Ending& ending) {
         return restart_contacts(Because::impact);
     }
     if (!goes_on) return fail(Outcome::chattering);
-    // Beyond its condition a normal load or a limit may be 0, or no longer 0.
+    // Crossing a condition may make a normal load or a limit 0, or nonzero.
     const bool changed = open_and_close();
     // Contacts stay as they are if no function jumps.
     return changed || crossed.jumps || !crossed.changes.slides.empty() ? decide(true) : true;
@@ -116,7 +116,7 @@ bool Engine::release(const Ending& ending) {
         same = is.way == was.way && is.riding == was.riding && is.creeps == was.creeps;
     }
     // A joint that only touched its limit must exceed it clearly next time.
-    if (same && Chatter::too_blunt(now_.mode.friction[j], torque_size(j))) return fail(Outcome::chattering);
+    if (same && Chatter::raise_margin(now_.mode.friction[j], torque_size(j))) return fail(Outcome::chattering);
     return goes_on();
 }
 
@@ -149,14 +149,14 @@ bool Engine::turn_slider(const Ending& ending) {
 }
 
 /// Applies the decision about contacts and reports it.
-bool Engine::decide(bool told, std::optional<Cause::Released> released) {
+bool Engine::decide(bool reports, std::optional<Cause::Released> released) {
     const Evaluation by{mechanics_, *frames_, *balances_, projection_, conditions_->slides(),
                         segment_,   room_,    pace_.unit};
-    const Cause cause{released, told && begun()};
+    const Cause cause{released, reports && begun()};
     Decision made = engine::decide(by, std::move(now_), std::move(contacts_), cause);
     now_ = std::move(made.now), contacts_ = std::move(made.contacts);
-    for (const Reported& each : made.told) recorder_->report_event(each);
-    room_.told = std::move(made.told);
+    for (const Reported& each : made.reported) recorder_->report_event(each);
+    room_.reported = std::move(made.reported);
     return made.good || fail(Outcome::excitation_not_finite);
 }
 
@@ -190,12 +190,12 @@ bool Engine::open_and_close() {
         for (const auto& [body, by] : joint.of) {
             const double v = now_.y[n() + body];
             fastest = std::max(fastest, std::fabs(by * v));
-            if (opens) recorder_->head(body, v);
+            if (opens) recorder_->set_heading(body, v);
         }
         if (!opens && std::fabs(now_.slip(mechanics_, j)) > 16 * rounding * fastest) {
             contacts_.slide(mechanics_, now_, j, model::motion_of(now_.slip(mechanics_, j)), false);
         } else if (!opens && now_.mode.leans[j] == 0) {
-            // if it sticks from now on, a stick is reported
+            // so that a stick is reported if it sticks from now on
             contacts_.slide(mechanics_, now_, j, Motion::forward, true);
         }
         if (begun()) report_event(opens ? EventKind::opened : EventKind::closed, j);
@@ -244,7 +244,7 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
     }
 }
 
-/// Returns the slip of a joint that counts as zero after a jump of velocities.
+/// Returns the slip up to which a joint counts as at rest after a jump of velocities.
 double Engine::rounding_of_slip(std::size_t j, Because why) const {
     const double belt = mechanics_.belt(j, now_.t.hi, now_.side());
     const bool weighted = problem_.system.joints[j].is_weighted();
@@ -318,10 +318,10 @@ bool Engine::turn_sliders() {
     return turned;
 }
 
-/// A freewheel that is thrown backward stops, and so does a joint that leans on a wall and is thrown into it, the
-/// fastest first. If a joint is thrown back once more, all that have stopped since then stop together, as they would
-/// after ever smaller impacts of one after the other. The energy of a system with a moved body begins after what this
-/// changes at the start. Returns the rounding of the slip of each joint; empty if there is no freewheel.
+/// Stops freewheels that are thrown backward and joints that are thrown into the wall on which they lean, the fastest
+/// first. If a joint is thrown back again, all that have stopped since stop together, as after endlessly many smaller
+/// impacts. At the start, the energy of a system with a moved body is counted from after this. Returns the rounding of
+/// the slip of each joint; empty if there is no freewheel.
 std::vector<double> Engine::catch_freewheels(bool at_start) {
     if (!problem_.system.has_freewheels()) return {};
     const std::size_t joints = mechanics_.joints(), most = 50 * joints;
@@ -376,7 +376,7 @@ double Engine::stop_together(const std::vector<char>& joints) {
     return lost;
 }
 
-/// Makes joints lean that are at a wall and do not move away from it.
+/// Makes joints lean that stand at a wall, and marks those at a wall as leaving it.
 void Engine::touch_walls() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const Joint& joint = problem_.system.joints[j];

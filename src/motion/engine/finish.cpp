@@ -15,7 +15,7 @@ using model::Motion;
 using model::Outcome;
 
 /// Reports user events that pass zero right at the end of the window. Returns false if one of them ends the run.
-bool Engine::last_instant() {
+bool Engine::handle_events_at_end() {
     if (problem_.drive.events.empty() || outcome_ != Outcome::reached_end) return true;
     const auto passing = users_.passing(now_, segment_, pace_.h, *balances_, frames_->of(now_.mode));
     return passing.empty() || act_all(passing);
@@ -34,7 +34,7 @@ void Engine::finish() {
     result_.outcome = outcome_;
     result_.located = conditions_->any();
     const bool lost = outcome_ == Outcome::unresolved || outcome_ == Outcome::chattering;
-    result_.noise = lost ? 0 : solver_->noise().clear(problem_.tolerance);
+    result_.noise = lost ? 0 : solver_->noise().notable(problem_.tolerance);
     Walls::keep_within(problem_.system, now_.y);  // near a wall the stored distance has digits that theta lacks
     result_.t_start = problem_.window.start;
     result_.t_stop = now_.t.hi;
@@ -57,7 +57,7 @@ void Engine::rows_at_end(SampledLoads& sampled) {
     }
     const Evaluation by{mechanics_, *frames_, *balances_, projection_, conditions_->slides(),
                         segment_,   room_,    pace_.unit};
-    Decision made = engine::decide(by, Now(now_), Contacts(contacts_), {.told = false});
+    Decision made = engine::decide(by, Now(now_), Contacts(contacts_), {.reports = false});
     const Now& then = made.good ? made.now : now_;
     recorder_->rows_at_end({then, segment_, frames_->of(then.mode), *balances_, sampled});
 }
@@ -122,7 +122,7 @@ void Engine::explain_end() {
         const Roughness look = roughness(source.value, {from, from + 2 * length, from + 5 * length}, length);
         const double part = look.most / (look.size + source.beside);
         const double slope = std::fabs(source.value(from + length) - source.value(from)) / length;
-        const bool is_rounding = look.most <= 16 * rounding * std::fabs(from) * slope;  // of the time
+        const bool is_rounding = look.most <= 16 * rounding * std::fabs(from) * slope;  // rounding of the time
         if (!look.is_noise() || is_rounding || !(part > worst)) continue;
         worst = part;
         result_.rough = Rough{source.name, look.most, part};

@@ -11,7 +11,7 @@ namespace dinal::motion::engine {
 
 namespace {
 
-constexpr double roundings_shown = 16;  // multiple of a formula's rounding that a series of its values may show
+constexpr double roundings_shown = 16;  // a series of a formula's values may show this multiple of their rounding
 
 constexpr double gross = 1e3;  // a stretch unresolved by more than this factor may contain a break
 /// The nodes before the widest gaps. Users' functions are also sampled in the middle of these.
@@ -88,12 +88,12 @@ bool Flow::is_dwarfed_beyond(double x, const Segment& s) const {
     return false;
 }
 
-/// Checks that nothing happens between the nodes that the nodes do not show.
+/// Checks that no function has a feature between the nodes that its values there do not show.
 Flow::Attempt Flow::look_between(Segment& s, const Mode& mode, const Frame& frame) {
     if (unresolved_ <= 1 && !agrees_between(s, mode, frame)) unresolved_ = 2;
     if (unresolved_ <= 1 && !hides_nothing(s, mode, 1)) unresolved_ = 2;
     if (unresolved_ > 1) return Attempt::shorten;
-    noise_.pass(s);
+    noise_.note_resolved(s);
     for (const Signal& load : mechanics_.loads()) load.keep(s, tolerance_);
     return Attempt::resolved;
 }
@@ -329,7 +329,7 @@ double longer_by(const Series& series, double allowed) {
 }
 
 /// Returns the greatest |t| of a stretch.
-double late(const Segment& s) {
+double latest_time(const Segment& s) {
     return std::max(std::fabs(s.start.hi), std::fabs(s.end));
 }
 
@@ -344,7 +344,7 @@ double Flow::noise_of_torques(const Segment& s) const {
     return noise_.of_torques() + of_share;
 }
 
-/// The noise that acts on each group and state through the quantities it depends on, times h. Empty if there is no
+/// Returns the noise that acts on each group and state through the quantities it depends on, times h; empty without
 /// noise.
 std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const {
     const std::size_t groups = frame.groups(), count = groups + m_;
@@ -365,10 +365,10 @@ std::vector<double> Flow::passed_on(const Segment& s, const Frame& frame) const 
     return rough;
 }
 
-/// Returns the possible error of a belt's velocity due to the rounding of times far from t = 0, and of its formulas
-/// where its series ends high.
+/// Returns the possible error of a belt's velocity due to the rounding of times far from t = 0 and, if its series has
+/// not decayed, to that of its formulas.
 double Flow::lost_by_belt(const Segment& s, std::size_t joint, const Series& belt) {
-    const double fastest = fastest_.belts[joint], lost = lost_in_time(belt, late(s), s.h, fastest);
+    const double fastest = fastest_.belts[joint], lost = lost_in_time(belt, latest_time(s), s.h, fastest);
     const bool ends_high = cheb::tail(belt) > lost + 16 * rounding * fastest;
     return lost + (ends_high ? roundings_shown * proofs_.rounding_of_belt(s, joint) : 0);
 }
@@ -389,7 +389,7 @@ void Flow::judge(const Segment& s, const Mode& mode, const Frame& frame) {
     judge_states(s, frame, by_others);
 }
 
-void Flow::note(const Segment& s, const Series& series, double scale, double allowed) {
+void Flow::note_error(const Segment& s, const Series& series, double scale, double allowed) {
     unresolved_ = std::max(unresolved_, scale * cheb::tail(series) / allowed);
     if (s.may_grow) growth_ = std::min(growth_, longer_by(series, allowed / scale));
 }
@@ -402,12 +402,12 @@ double Flow::lost_of_torques(const Segment& s, std::size_t body) const {
     for (std::size_t j = 0; j < mechanics_.joints() && !takes_rests_; ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
         const bool acts = j == body || (!mechanics_.loads()[j].none() && joint.is_on(body));
-        if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), late(s), s.h, sizes_.all[body]);
+        if (acts) sum += lost_in_time(cheb::fit(s.loads[j]), latest_time(s), s.h, sizes_.all[body]);
         const model::ContactFriction& rubs = joint.friction;
         const bool of_time = rubs.normal || rubs.function != nullptr || rubs.sliding[0] || rubs.sliding[1];
         friction_changes = friction_changes || (of_time && joint.is_on(body));
     }
-    if (friction_changes) sum += lost_in_time(cheb::fit(s.torques[body]), late(s), s.h, sizes_.all[body]);
+    if (friction_changes) sum += lost_in_time(cheb::fit(s.torques[body]), latest_time(s), s.h, sizes_.all[body]);
     return sum;
 }
 
@@ -427,13 +427,13 @@ void Flow::judge_bodies(const Segment& s, const Mode& mode, const Frame& frame, 
             if (tail > allowed || mechanics_.nonlinear()) allowed += per_torque * lost_of_torques(s, i);
             if (tail > allowed && !frame.edges.empty()) allowed += blurred_velocity();  // held on belts
             allowed += per_torque * noise_.of_torques() + others;
-            note(s, series, h, allowed);
+            note_error(s, series, h, allowed);
             allowed_[i] = allowed / h;
         } else if (n_ > 1 || !is_compared(0, mode)) {  // otherwise the joint's torques are checked instead
             const Series series = cheb::fit(s.torques[i]);
             double allowed = (tolerance_ + 16 * rounding) * torques + noise_.of_torques() + smallest;
             if (cheb::tail(series) > allowed) allowed += lost_of_torques(s, i);
-            note(s, series, 1, allowed);
+            note_error(s, series, 1, allowed);
         }
     }
 }
@@ -447,23 +447,24 @@ void Flow::judge_joints(const Segment& s, const Mode& mode) {
         if (is_compared(joint, mode)) {
             const Series& series = s.holding_series[joint];
             const double torques = std::max(size_at(joint), held),
-                         lost = (takes_rests_ ? 0 : lost_in_time(series, late(s), s.h, torques)) + noise_.of_torques();
-            note(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
+                         lost = (takes_rests_ ? 0 : lost_in_time(series, latest_time(s), s.h, torques)) +
+                                noise_.of_torques();
+            note_error(s, series, 1, (tolerance_ + 64 * rounding) * torques + lost + blurred_by_belts(s) + smallest);
             for (std::size_t way = 0; way < 2 && mechanics_.limits_change(joint, mode); ++way) {
                 const Series limit = cheb::fit(s.limits[joint][way]);
                 // the limit is compared with these torques
                 const double most = greatest(s.limits[joint][way]) + torques;
                 double allowed =
-                    (tolerance_ + 64 * rounding) * most + lost_in_time(limit, late(s), s.h, most) + smallest;
+                    (tolerance_ + 64 * rounding) * most + lost_in_time(limit, latest_time(s), s.h, most) + smallest;
                 if (cheb::tail(limit) > allowed) allowed += roundings_shown * proofs_.rounding_of_limit(s, mode, joint);
-                note(s, limit, 1, allowed);
+                note_error(s, limit, 1, allowed);
             }
         }
         if (!mechanics_.has_belt(joint)) continue;
         const Series belt = cheb::fit(s.belts[joint]);
         const double allowed = (tolerance_ + 16 * rounding) * greatest(s.belts[joint]) +
                                16 * rounding * fastest_.belts[joint] + lost_by_belt(s, joint, belt) + smallest;
-        note(s, belt, 1, allowed);
+        note_error(s, belt, 1, allowed);
     }
 }
 
@@ -480,9 +481,9 @@ void Flow::judge_states(const Segment& s, const Frame& frame, const std::vector<
         const double fastest = std::max(fastest_.rates[k], greatest(s.f[2 * n_ + k]));
         const double allowed =
             (tolerance_ + rough + 64 * rounding) * std::max(greatest(s.y[2 * n_ + k]), cheb::size(series)) +
-            64 * rounding * h * fastest + lost_in_time(series, late(s), h, h * fastest) +
+            64 * rounding * h * fastest + lost_in_time(series, latest_time(s), h, h * fastest) +
             h * noise_.floor().noise[n_ + k] + of_others(by_others, frame.groups() + k);
-        note(s, series, 1, allowed + smallest);
+        note_error(s, series, 1, allowed + smallest);
     }
 }
 
@@ -574,7 +575,7 @@ bool Flow::agrees_between(const Segment& s, const Mode& mode, const Frame& frame
             const double noise = noise_.floor().noise[mechanics_.system().joints[i].first()];
             const double allowed = (tolerance_ + 4 * rounding) * size + noise + lost + smallest;
             if (std::fabs(room_.load[i] - cheb::value(loads[i], x)) <= clearly * allowed) continue;
-            proofs_.see(t);
+            proofs_.note_deviation(t);
             return false;
         }
         if (!mechanics_.nonlinear()) continue;
@@ -697,7 +698,6 @@ void Flow::stand_still(Segment& s, const std::vector<double>& y) const {
     for (Series& held : s.holding_series) held = {};
 }
 
-/// Extrapolates over a stretch that is too short to matter.
 void Flow::pass_over(Segment& s) const {
     s.proven = true;
     for (std::size_t k = 0; k < s.y.size(); ++k) {

@@ -31,15 +31,15 @@ public:
     /// `departing`. The result is `failed` if a value is not finite, at bad_time().
     Attempt solve(Segment& segment, const Mode& mode, const Frame& frame, const std::vector<double>& begin,
                   const std::vector<double>& departing);
-    /// Proves, for a stretch that is used up to the point x only, that functions do nothing else there. Returns false
-    /// if one does. Not for Runge-Kutta steps, which prove nothing.
+    /// Proves, for a stretch that is used up to the point x only, that functions follow their series there. Returns
+    /// false if one does not. Runge-Kutta steps are not proven.
     bool hides_nothing_until(double x, Segment& segment, const Mode& mode);
     /// Returns whether an acceleration or a rate is so much greater beyond the point x that the error of the stretch,
     /// which is relative to the greatest one, may matter before x.
     [[nodiscard]] bool is_dwarfed_beyond(double x, const Segment& segment) const;
     [[nodiscard]] double bad_time() const { return bad_time_; }
-    /// Returns whether the last attempt failed because it strayed to a motion that is not finite, which the function of
-    /// a piece may cause beyond its end.
+    /// Returns whether the last attempt failed because its iteration reached a motion that is not finite, as the
+    /// formula of a piece may cause beyond its end.
     [[nodiscard]] bool strayed() const { return strayed_; }
     /// The error of the last stretch over the allowed one, scaled as if of order 16; at most 1 if it is resolved.
     [[nodiscard]] double unresolved() const { return unresolved_; }
@@ -54,9 +54,10 @@ public:
         return takes_rests_ && !mechanics_.nonlinear() && !mechanics_.has_belts();
     }
     [[nodiscard]] const Noise& noise() const { return noise_; }
-    /// Returns the noise of the torques on a stretch; the share of a load that slides has the rounding of all of them.
+    /// Returns the noise of the torques on a stretch; the share of a sliding load adds the rounding of the greatest
+    /// torque.
     [[nodiscard]] double noise_of_torques(const Segment& segment) const;
-    void know(const Floor& floor) { noise_.know(floor); }
+    void start_with(const Floor& floor) { noise_.start_with(floor); }
     /// The possible error of a body's velocity at the end of a resolved stretch.
     [[nodiscard]] double uncertain(std::size_t body, const Segment& segment) const {
         return segment.h * allowed_[body];
@@ -69,7 +70,7 @@ public:
     [[nodiscard]] std::optional<double> found_break(const Segment& segment) const;
     /// Returns whether the belt of a joint clearly jumps at this time.
     [[nodiscard]] bool belt_jumps(const Segment& segment, std::size_t joint, double t) const;
-    /// The time of an undeclared jump of the belt of a joint in a stretch; none if there is only noise.
+    /// Returns the time of an undeclared jump of a joint's belt in a stretch; empty if there is only noise.
     [[nodiscard]] std::optional<double> jump_of_belt(const Segment& segment, std::size_t joint) const;
     /// Lets everything stand still over the stretch, however long it is.
     void stand_still(Segment& segment, const std::vector<double>& y) const;
@@ -107,7 +108,7 @@ protected:
     std::size_t n_, m_;
     double unresolved_ = 0, growth_ = 1;
     struct {
-        std::vector<double> belts, rates;  ///< greatest so far
+        std::vector<double> belts, rates;  ///< greatest magnitudes so far
         double lost_by_belts = 0;          ///< error of belt velocities on the last stretch due to the rounding of t
     } fastest_;
     Noise noise_;
@@ -140,7 +141,7 @@ private:
                       const std::vector<double>& by_others);
     void judge_joints(const Segment& segment, const Mode& mode);
     void judge_states(const Segment& segment, const Frame& frame, const std::vector<double>& by_others);
-    void note(const Segment& segment, const Series& series, double scale, double allowed);
+    void note_error(const Segment& segment, const Series& series, double scale, double allowed);
     [[nodiscard]] double lost_by_belt(const Segment& segment, std::size_t joint, const Series& belt);
     [[nodiscard]] double lost_of_torques(const Segment& segment, std::size_t body) const;
     void add_turns(const Segment& segment, std::vector<double>& places) const;

@@ -11,8 +11,8 @@ namespace dinal::motion::engine {
 using model::Joint;
 using model::Motion;
 
-/// All kinds of ends in the order in which they are watched, joint by joint; of several at the same point the first one
-/// counts. Conditions and user events come last, because very close to a standstill they count as later.
+/// All kinds of ends in the order in which they are watched for each joint. If several are at the same point, the first
+/// one counts. Conditions and user events come last, because very close to a standstill they count as later.
 const std::array<Guards::Row, 11> Guards::table{{
     {Per::joint, By::release, &Guards::watch_release},
     {Per::joint, By::slip, &Guards::watch_slip},
@@ -41,7 +41,7 @@ std::size_t Guards::count(Per per) const {
 }
 
 Ending Guards::first() {
-    for (Contacts::Of& each : of_.contacts.of) each.crept = false;
+    for (Contacts::Contact& each : parts_.contacts.of) each.crept = false;
     for (const Per per : {Per::joint, Per::slider, Per::load, Per::motion}) {
         for (which_ = 0; which_ < count(per); ++which_) {
             for (const Row& row : table) {
@@ -54,7 +54,7 @@ Ending Guards::first() {
     return ending_;
 }
 
-void Guards::see(std::optional<double> x, int side) {
+void Guards::end_at(std::optional<double> x, int side) {
     if (x && *x < ending_.x) ending_ = {*x, by_, which_, side};
 }
 
@@ -62,7 +62,7 @@ void Guards::watch(const Series& left, double floor, bool zero, int side, double
     cheb::Bounded<node_count> curve(1, left, cheb::derivative(left));
     curve.raise_floor(floor);
     curve.raise_slope_floor(slope_floor);
-    see(cheb::first_below(curve, -1, zero), side);
+    end_at(cheb::first_below(curve, -1, zero), side);
 }
 
 bool Guards::slides(std::size_t joint) const {
@@ -90,7 +90,7 @@ double Guards::least_inertia(std::size_t joint) const {
 /// be wrong by more than it moves at first.
 double Guards::uncertain(std::size_t joint) const {
     double sum = 0;
-    for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * of_.solver.uncertain(body, segment_);
+    for (const auto& [body, by] : joint_at(joint).of) sum += std::fabs(by) * parts_.solver.uncertain(body, segment_);
     return sum;
 }
 
@@ -101,7 +101,7 @@ bool Guards::none_leaves() const {
         if (!now_.mode.friction[j].leaving) continue;
         Nodes slips = mechanics_.slips(j, segment_.y, segment_.belts[j]);
         for (const double first = slips[0]; double& slip : slips) slip -= first;
-        const double by_rounding = 2 * segment_.h / least_inertia(j) * rounding * of_.sizes.on(joint_at(j));
+        const double by_rounding = 2 * segment_.h / least_inertia(j) * rounding * parts_.sizes.on(joint_at(j));
         constexpr double few = 4;
         if (now_.mode.leans[j] != 0 || greatest(slips) > few * by_rounding) return false;
     }
@@ -112,7 +112,7 @@ void Guards::watch_slip(std::size_t joint) {
     if (!slides(joint)) return;
     const Joint& own = joint_at(joint);
     const Slipping& how = now_.mode.friction[joint];
-    const double sign = model::sign_of(how.way), torques = of_.sizes.on(own);
+    const double sign = model::sign_of(how.way), torques = parts_.sizes.on(own);
     const Nodes& belt = segment_.belts[joint];
     const bool leans = now_.mode.leans[joint] != 0;
     const Nodes turns = leans ? Nodes{} : mechanics_.between(joint, std::span(segment_.y).subspan(n()));
@@ -133,7 +133,7 @@ void Guards::watch_slip(std::size_t joint) {
     const bool no_way = fastest * 2 * segment_.h <= rounding / 2 * std::fabs(mechanics_.angle(joint, now_.y));
     const bool crept = drive <= (no_way ? 256 : 4) && may_creep(joint);
     if (crept) {
-        of_.contacts.of[joint].crept = true;
+        parts_.contacts.of[joint].crept = true;
         if (!how.leaving && ending_.by == By::nobody) ending_ = {1, by_, joint};
         if (!how.leaving) return;
     }
@@ -187,7 +187,7 @@ void Guards::watch_release(std::size_t joint) {
     const double beside_zero = now_.mode.friction[joint].beside;
     const bool between = beside_zero > 0, constant = !mechanics_.limits_change(joint, now_.mode);
     const int wall = now_.mode.leans[joint];
-    const double torques = of_.sizes.on(joint_at(joint));
+    const double torques = parts_.sizes.on(joint_at(joint));
     const std::vector<double> slip = between ? slip_alone(mechanics_, now_.mode, joint) : std::vector<double>{};
     Nodes pull{};
     Series series = segment_.holding_series[joint];  // series of the pull
@@ -203,9 +203,9 @@ void Guards::watch_release(std::size_t joint) {
         if (std::isinf(most[0])) continue;  // the backward side of a freewheel
         const auto find_balance = [&](double x, const Moment& at, Balance& found) {
             std::vector<double> beside;
-            return of_.balances.on_stretch(segment_, x,
-                                           between ? just_beside(at, slip, {side, side, 0, beside_zero}, beside) : at,
-                                           now_.mode, frame_, found);
+            return parts_.balances.on_stretch(
+                segment_, x, between ? just_beside(at, slip, {side, side, 0, beside_zero}, beside) : at, now_.mode,
+                frame_, found);
         };
         if (between) {
             for (std::size_t j = 0; j < node_count; ++j) {
@@ -214,7 +214,8 @@ void Guards::watch_release(std::size_t joint) {
                 pull[j] = -found.holding[joint];
             }
             if (!good_) return;
-            // The surface at which a load jumps may have been met for an instant only, at which the joint holds.
+            // If loads jump only at the first instant, and the joint holds there, its holding torque is the pull at the
+            // start.
             constexpr double hardly = 1e-9;
             bool instant = -sign * segment_.holding[joint][0] <= most[0] + hardly * torques;
             for (std::size_t j = 1; j < node_count; ++j) {
@@ -223,16 +224,16 @@ void Guards::watch_release(std::size_t joint) {
             if (instant) pull[0] = -segment_.holding[joint][0];
             series = cheb::fit(pull);
         }
-        const double blunt = now_.mode.friction[joint].blunt;
+        const double margin = now_.mode.friction[joint].margin;
         Series left = constant ? Series{most[0]} : cheb::fit(most);
         const double doubt =
             8 * (rounding * (greatest(most) + torques) + cheb::tail(series) + (constant ? 0 : cheb::tail(left))) +
-            of_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
-        left[0] += blunt;
+            parts_.solver.blurred_by_belts(segment_) + (1 - known_part(mechanics_)) * greatest(pull);
+        left[0] += margin;
         for (std::size_t k = 0; k < node_count; ++k) left[k] -= sign * series[k];
         if (cheb::least_bound(left) > 2 * doubt) continue;
         Nodes values{};
-        for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + blunt;
+        for (std::size_t j = 0; j < node_count; ++j) values[j] = most[j] - sign * pull[j] + margin;
         left = cheb::fit(values);  // near zero this has more digits than the difference of two series
         cheb::Bounded<node_count> curve(1, left, cheb::derivative(left), values);
         curve.raise_floor(doubt);
@@ -247,7 +248,7 @@ void Guards::watch_release(std::size_t joint) {
         };
         std::optional<double> touch;
         const auto touches = [&](double x) {
-            if (blunt > 0) return false;
+            if (margin > 0) return false;
             for (const double place : {x, curve.lowest_near(x)}) {
                 if (!touch && lets_go(place)) touch = place;
             }
@@ -256,7 +257,7 @@ void Guards::watch_release(std::size_t joint) {
         // An undetected jump may have taken the torque far beyond its limit.
         auto x = values[0] < -doubt ? std::optional(-1.0) : cheb::first_below(curve, -1, false, touches);
         if (x && touch) x = first_true(lets_go, *touch);
-        if (x && segment_.time(*x) < segment_.end) see(x, static_cast<int>(side));
+        if (x && segment_.time(*x) < segment_.end) end_at(x, static_cast<int>(side));
     }
 }
 
@@ -294,12 +295,14 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
         const double begin = wall * now_.gap(mechanics_.system().joints[joint], place);
         Nodes change = mechanics_.between(joint, segment_.moved);
         constexpr double between_nodes = 3;  // bound of a series relative to its greatest value at the nodes
-        if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * of_.walls.reach[joint]) continue;
+        if (begin > (between_nodes + 1) * greatest(change) && begin > 256 * rounding * parts_.walls.reach[joint])
+            continue;
         for (double& way : change) way *= -wall;
         // A motion that begins at the wall has a gap equal to its displacement, so it is as accurate.
-        const bool leaving = of_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
-        const double far =
-            leaving ? greatest(change) : std::max(of_.walls.reach[joint], std::fabs(place - of_.walls.origin[joint]));
+        const bool leaving =
+            parts_.contacts.of[joint].leaves_wall && std::fabs(begin) <= 4 * rounding * std::fabs(place);
+        const double far = leaving ? greatest(change)
+                                   : std::max(parts_.walls.reach[joint], std::fabs(place - parts_.walls.origin[joint]));
         Series left = cheb::fit(change);
         if (!leaving) left[0] += begin;
         // The sum of the bodies' velocities has a rounding although their joint leaves the wall from slip 0.
@@ -313,12 +316,12 @@ void Guards::watch_walls(std::size_t joint, const model::Walls& walls) {
 void Guards::watch_stop(std::size_t joint) {
     if (!joint_at(joint).stops) return;
     const Moment first = segment_.moment(0, point_);
-    if (of_.conditions.slides().keep_slip(joint, now_.mode, frame_, first)) return;
+    if (parts_.conditions.slides().holds_slip(joint, now_.mode, frame_, first)) return;
     const model::Walls& stops = *mechanics_.system().joints[joint].stops;
     const double begin = mechanics_.angle(joint, first.y);
     const int pressed = now_.mode.presses[joint];
     const int deep = pressed != 0 ? pressed : begin > stops.upper ? 1 : begin < stops.lower ? -1 : 0;
-    if (deep == 0 || (pressed == 0 && of_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops);
+    if (deep == 0 || (pressed == 0 && parts_.contacts.of[joint].leaves_wall)) return watch_walls(joint, stops);
     if (pressed == 0) {  // it may reach the opposite wall first
         model::Walls other = stops;
         (deep > 0 ? other.upper : other.lower) = deep * model::never;
@@ -331,11 +334,11 @@ void Guards::watch_stop(std::size_t joint) {
     };
     Half half = pressed != 0 ? 1 : -1;
     const double rounded = 64 * rounding * stops.stiffness * std::fabs(stops.at(deep));
-    see(leaves(segment_.at_nodes(value, point_), value, half, rounded), pressed != 0 ? 0 : deep);
+    end_at(leaves(segment_.at_nodes(value, point_), value, half, rounded), pressed != 0 ? 0 : deep);
 }
 
 /// Returns whether other joints hold this one, so that its slip is only rounding. Belts and moved bodies may still turn
-/// what is held.
+/// the held bodies.
 bool Guards::is_kept(std::size_t joint) const {
     if (!frame_.keeps(joint)) return false;
     double fastest = this->fastest(joint);
@@ -354,8 +357,8 @@ void Guards::watch_slider(std::size_t slider) {
     Half half = 1;
     if (slides_to != Motion::stuck) {
         half = static_cast<int>(slides_to);
-        if (!known) see(slip_leaves(own.joint, half), static_cast<int>(Motion::stuck));
-        if (known && moves_to != Motion::stuck && moves_to != slides_to) see(-1, static_cast<int>(Motion::stuck));
+        if (!known) end_at(slip_leaves(own.joint, half), static_cast<int>(Motion::stuck));
+        if (known && moves_to != Motion::stuck && moves_to != slides_to) end_at(-1, static_cast<int>(Motion::stuck));
         return;
     }
     const double rounded = own.stiffness * 2 * segment_.h * uncertain(own.joint);
@@ -364,7 +367,7 @@ void Guards::watch_slider(std::size_t slider) {
         const auto left = [&](const Moment& at) {
             return own.limit - model::sign_of(way) * own.stiffness * at.y[own.bend];
         };
-        see(leaves(segment_.at_nodes(left, point_), left, half, rounded), static_cast<int>(way));
+        end_at(leaves(segment_.at_nodes(left, point_), left, half, rounded), static_cast<int>(way));
     }
 }
 
@@ -384,7 +387,7 @@ void Guards::watch_corner(std::size_t joint) {
         Series left = series;
         for (double& c : left) c *= -side;
         left[0] += side * corner;
-        const bool there = of_.contacts.of[joint].edge == side;
+        const bool there = parts_.contacts.of[joint].edge == side;
         watch(left, 16 * rounding * fastest(joint), there, side);
     }
 }
@@ -400,12 +403,12 @@ std::optional<double> Guards::slip_leaves(std::size_t joint, Half& half) {
 /// Ends the stretch at slip 0, where the rate of bristles has a corner.
 void Guards::watch_bristles(std::size_t joint) {
     if (mechanics_.bristle(joint) == nullptr) return;
-    Half& half = of_.contacts.of[joint].bristle_sign;
+    Half& half = parts_.contacts.of[joint].bristle_sign;
     const auto x = slip_leaves(joint, half);
     if (x && *x <= -1) {
         half = -half;
     } else {
-        see(x, -half);
+        end_at(x, -half);
     }
 }
 
@@ -418,17 +421,17 @@ void Guards::watch_normal(std::size_t joint) {
         // The contact is open at the start, where the load may be rounding or 0 for some time.
         const auto* const presses = std::find_if(values.begin() + 1, values.end(), [](double N) { return N > 0; });
         if (presses == values.end()) return;
-        const auto exact = segment_.anywhere(pressing, point_);
+        const auto exact = segment_.function_of_x(pressing, point_);
         const double x = first_true([&](double place) { return exact(place) > 0; },
                                     cheb::nodes[static_cast<std::size_t>(presses - values.begin())]);
         // A load that is only rounding at the time at which it opened the contact does not close it.
         constexpr double clearly = 1e-9;
-        if (segment_.time(x) > now_.t.hi || values[0] > clearly * greatest(values)) see(x);
+        if (segment_.time(x) > now_.t.hi || values[0] > clearly * greatest(values)) end_at(x);
         return;
     }
-    Half& half = of_.contacts.of[joint].load_sign;
+    Half& half = parts_.contacts.of[joint].load_sign;
     const auto x = leaves(values, pressing, half);
-    see(x, -half);
+    end_at(x, -half);
 }
 
 /// Returns the point at which an angle, velocity or state reaches a relay's level.
@@ -448,24 +451,24 @@ void Guards::watch_relays(std::size_t load) {
     const Signal& of = mechanics_.loads()[load];
     for (std::size_t r = 0; r < of.relays(); ++r) {
         if (const auto at = of.switching(r); at.place) {
-            see(switches(at.sign, at.level, *at.place), static_cast<int>(r));
+            end_at(switches(at.sign, at.level, *at.place), static_cast<int>(r));
             continue;
         }
         const auto left = [&](const Moment& at) { return of.until_switch(r, at); };
         Nodes values = segment_.at_nodes(left, point_);
         // Where the function jumps past both thresholds, the rounding of the start must not switch it back.
-        if (values[0] < 0) values[0] = segment_.anywhere(left, point_)(soon(segment_));
+        if (values[0] < 0) values[0] = segment_.function_of_x(left, point_)(soon(segment_));
         Half half = 1;
-        see(values[0] < 0 ? -1 : leaves(values, left, half), static_cast<int>(r));
+        end_at(values[0] < 0 ? -1 : leaves(values, left, half), static_cast<int>(r));
     }
 }
 
 void Guards::watch_conditions(std::size_t /*motion*/) {
-    if (of_.conditions.any()) of_.conditions.watch(segment_, now_.y, now_.t.hi, ending_);
+    if (parts_.conditions.any()) parts_.conditions.watch(segment_, now_.y, now_.t.hi, ending_);
 }
 
 void Guards::watch_users(std::size_t /*motion*/) {
-    const UserEvents::Seen seen = of_.users.watch(segment_, ending_);
+    const UserEvents::Seen seen = parts_.users.watch(segment_, ending_);
     good_ = good_ && seen.good;
     thrown_back_ = seen.again;
 }

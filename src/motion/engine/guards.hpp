@@ -19,7 +19,7 @@ namespace dinal::motion::engine {
 /// Engine::handle(). Makes no decision, but notes the signs of watched values and which contacts creep.
 class Guards {
 public:
-    struct Of {
+    struct Parts {
         const Mechanics& mechanics;
         const Segment& segment;
         const Frame& frame;
@@ -32,8 +32,8 @@ public:
         Conditions& conditions;
         UserEvents& users;
     };
-    explicit Guards(const Of& of)
-        : mechanics_(of.mechanics), segment_(of.segment), frame_(of.frame), now_(of.begin), of_(of) {}
+    explicit Guards(const Parts& parts)
+        : mechanics_(parts.mechanics), segment_(parts.segment), frame_(parts.frame), now_(parts.begin), parts_(parts) {}
 
     /// Returns the first end.
     Ending first();
@@ -50,20 +50,20 @@ private:
     struct Row {
         Per per;
         By by;
-        void (Guards::*watch)(std::size_t which);  ///< calls see() with the first such end, if there can be one
+        void (Guards::*watch)(std::size_t which);  ///< calls end_at() with the first end of this kind, if there is one
     };
     static const std::array<Row, 11> table;
     [[nodiscard]] std::size_t count(Per per) const;
 
-    /// Ends the stretch at x by what is being watched, if nothing ends it earlier.
-    void see(std::optional<double> x, int side = 0);
-    /// Ends the stretch at the first zero of a curve that is positive, or starts from a known `zero`. `floor` is its
+    /// Ends the stretch at x by the present row's cause, unless it already ends earlier.
+    void end_at(std::optional<double> x, int side = 0);
+    /// Ends the stretch at the first zero of a curve that starts positive or, if `zero`, at zero. `floor` is its
     /// rounding, `slope_floor` that of its slope.
     void watch(const Series& left, double floor, bool zero, int side, double slope_floor = 0);
     /// Returns the point at which a function of the moment, given its values at the nodes, leaves its half.
     template <class Value>
     std::optional<double> leaves(const Nodes& values, const Value& value, Half& half, double rounded = 0) {
-        return Watched(values, segment_.anywhere(value, point_), rounded).leaves(half, -1);
+        return Watched(values, segment_.function_of_x(value, point_), rounded).leaves(half, -1);
     }
     std::optional<double> slip_leaves(std::size_t joint, Half& half);
     [[nodiscard]] double fastest(std::size_t joint) const;
@@ -97,7 +97,7 @@ private:
     const Segment& segment_;
     const Frame& frame_;
     const Now& now_;
-    const Of& of_;
+    const Parts& parts_;
     Ending ending_;
     By by_ = By::nobody;     ///< cause in the row that is being watched
     std::size_t which_ = 0;  ///< index of the joint, slider or load that is being watched

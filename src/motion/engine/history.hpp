@@ -23,9 +23,9 @@ namespace dinal::motion::engine {
 class Remade : text::NotCopied {
 public:
     virtual ~Remade() = default;
-    /// Angle and velocity at the time since the start.
+    /// Returns angle and velocity at this time after the start of the stretch.
     virtual std::vector<double> at(double since_start) const = 0;
-    /// The work as a function of the time since the start. The function must not outlive the stretch.
+    /// Returns the work as a function of the time after the start. The function must not outlive the stretch.
     [[nodiscard]] virtual std::function<Work(double)> works() const = 0;
     virtual std::size_t bytes() const = 0;
 };
@@ -37,7 +37,7 @@ struct Kept {
     double length = 0;  ///< length used, at most 2 h
     struct Value {
         double begin = 0;
-        Series change{};  ///< minus `begin`
+        Series change{};  ///< value minus `begin`
     };
     std::vector<Value> y{};  ///< each angle, velocity and state
     /// The torques at a joint, at the nodes. For a body's joint with the ground they include M and the inertial
@@ -91,11 +91,11 @@ public:
     /// Stores the state at the end of the run, including instantaneous changes there.
     void close(const Clock& end, const std::vector<double>& y);
 
-    /// All angles, velocities and states at a time of the run.
+    /// Returns all angles, velocities and states at a time of the run.
     std::vector<double> at(double t) const { return at(t, Side::at); }
     std::vector<double> at(double t, Side side) const;
     std::size_t bytes() const { return bytes_; }
-    /// The time up to which the motion was stored, in earlier runs, too; infinite if all was.
+    /// Returns the time up to which the motion is stored, including earlier runs; infinite if all of it is.
     double whole_until() const {
         return before_ == nullptr ? whole_until_ : std::min(whole_until_, before_->whole_until());
     }
@@ -139,7 +139,7 @@ struct Carry {
     Floor floor = {};  ///< may be empty
 };
 
-/// The data for views of single bodies and links, and for continuing the run.
+/// What a finished run keeps for views of single bodies and links, and for continuing it.
 struct Left {
     std::vector<double> start = {};  ///< all angles, velocities and states at the start
     Mode begun = {};                 ///< mode of the contacts at the start

@@ -75,7 +75,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     if (stayed && before == 0) {
         now_.mode.leans[joint] = wall;
         now_.mode.friction[joint].leaving = false;
-        Chatter::too_blunt(now_.mode.friction[joint], torque_size(joint));  // the joint was released without leaving
+        Chatter::raise_margin(now_.mode.friction[joint], torque_size(joint));  // the joint was released without leaving
         if (!decide(true)) return false;
         stands();
         return goes_on();
@@ -104,7 +104,7 @@ bool Engine::hit(std::size_t joint, int wall) {
         if (!bounces) return fail(Outcome::excitation_not_finite);
         // Without a spring, "short" is relative to the run so far, not to its end, so that stopping and resuming
         // changes nothing.
-        // A bounce lower than the rounding of the angles is no motion. Between two walls, or if a load jumps near the
+        // A bounce lower than the rounding of the angles counts as rest. Between two walls, or if a load jumps near the
         // wall, only past bounces show that.
         const bool unseen = e * before * bounces->once <= unresolved || walls_.low[joint] > most_low;
         rests = bounces->all <= last_bounces * pace || bounces->once <= shortest_bounce * pace || unseen;
@@ -115,7 +115,7 @@ bool Engine::hit(std::size_t joint, int wall) {
     recorder_->add_jump(now_.t.hi, joint, {.impacts = lost});
     breaks_.echo(now_.t.hi, 1);
     for (std::size_t i = 0; i < n(); ++i) {
-        if (thrown.velocities[i].second != 0) recorder_->head(i, rests ? 0 : now_.y[n() + i]);
+        if (thrown.velocities[i].second != 0) recorder_->set_heading(i, rests ? 0 : now_.y[n() + i]);
     }
     if (rests) {
         velocity(0);
@@ -153,8 +153,8 @@ bool Engine::is_driven(std::size_t joint, const Impulses::Thrown& thrown) const 
     return problem_.hidden > 0 && !(thrown.lightness > rounded * alone);
 }
 
-/// Stops masses in a row at once that would strike each other ever more slowly, endlessly: all that lean after an
-/// impact that `fades`, and without rebound those that are thrown into their walls. Returns the joints that stopped.
+/// Stops masses in a row that would otherwise strike each other endlessly: after an impact that `fades` all that lean,
+/// and without rebound those that are thrown into their walls. Returns the joints that stopped.
 std::vector<char> Engine::stop_row(std::size_t joint, int wall, bool fades) {
     const auto& joints = problem_.system.joints;
     std::vector<char> stopped(joints.size(), 0);
@@ -183,16 +183,16 @@ void Engine::leave_walls(const std::vector<char>& stopped) {
     }
 }
 
-bool Engine::act_all(const std::vector<std::size_t>& told) {
-    users_.pass(told);
-    if (!std::all_of(told.begin(), told.end(), [&](std::size_t event) { return act(event, told); })) return false;
+bool Engine::act_all(const std::vector<std::size_t>& events) {
+    users_.flip_sides(events);
+    if (!std::all_of(events.begin(), events.end(), [&](std::size_t event) { return act(event, events); })) return false;
     // All simultaneous events are reported before one stops the run, as a continued run would not report them.
     const bool stops =
-        std::any_of(told.begin(), told.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
+        std::any_of(events.begin(), events.end(), [&](std::size_t event) { return problem_.drive.events[event].stop; });
     return !stops || fail(Outcome::stopped);
 }
 
-bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
+bool Engine::act(std::size_t event, const std::vector<std::size_t>& events) {
     const model::WantedEvent& wanted = problem_.drive.events[event];
     recorder_->report_user_event(now_, event);
     if (wanted.act != nullptr) {
@@ -201,7 +201,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         model::State state{now_.y[0], now_.y[n()]};
         const bool named = problem_.system.named;
         const std::span<double> all(now_.y);
-        const std::span<double> given = all.first(asking_.told);
+        const std::span<double> given = all.first(convention_.passed);
         mechanics_.call_unread(now_.here(), now_.mode);
         if (!wanted.act->act(now_.t.hi, state, named ? given : given.subspan(2 * n()))) {
             return fail(Outcome::excitation_not_finite);
@@ -216,7 +216,7 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
             !std::equal(now_.y.begin(), now_.y.begin() + static_cast<std::ptrdiff_t>(2 * n()), before.begin());
         if (moved) {
             std::fill(now_.mode.leans.begin(), now_.mode.leans.end(), 0);
-            throw_along();
+            align_rigid_velocities();
         }
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             const double work = energy_at(j, now_.y) - energy_at(j, before);
@@ -224,22 +224,22 @@ bool Engine::act(std::size_t event, const std::vector<std::size_t>& told) {
         }
         breaks_.echo(now_.t.hi, 1);
         if (moved) {
-            for (std::size_t i = 0; i < n(); ++i) recorder_->head(i, now_.y[n() + i]);
+            for (std::size_t i = 0; i < n(); ++i) recorder_->set_heading(i, now_.y[n() + i]);
             touch_walls();
             if (!restart_contacts(Because::act)) return false;
-            see_flight();
+            shorten_for_flight();
         }
         conditions_->decide({now_.t.hi, now_.side(), now_.departing(problem_.system, scratch_.departing)}, now_.mode,
                             segment_);
-        users_.stand_where_put(values, now_.y != before ? told : std::vector<std::size_t>(), now_, segment_, pace_.h,
-                               *balances_, frames_->of(now_.mode));
+        users_.set_sides_after_actions(values, now_.y != before ? events : std::vector<std::size_t>(), now_, segment_,
+                                       pace_.h, *balances_, frames_->of(now_.mode));
         if (moved && users_.fades(event, now_.t.hi) && !wanted.stop) return fail(Outcome::chattering);
     }
     return wanted.stop || goes_on();
 }
 
 /// Shortens the next stretch if a body is in a short flight that returns soon.
-void Engine::see_flight() {
+void Engine::shorten_for_flight() {
     if (!balances_->at_present(now_, frames_->of(now_.mode), segment_, room_.balance)) return;
     for (std::size_t i = 0; i < n(); ++i) {
         const double v = now_.y[n() + i], a = room_.balance.accelerations[i];

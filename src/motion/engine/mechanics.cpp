@@ -333,14 +333,14 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
     return x.cwiseMax(low).cwiseMin(high);
 }
 
-Mechanics::Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking)
-    : system_(system), drive_(drive), base_(drive.base, &asking) {
+Mechanics::Mechanics(const model::System& system, const model::Drive& drive, const CallConvention& convention)
+    : system_(system), drive_(drive), base_(drive.base, &convention) {
     for (std::size_t j = 0; j < joints(); ++j) {
-        loads_.emplace_back(j < drive.loads.size() ? drive.loads[j] : model::Excitation(), &asking);
+        loads_.emplace_back(j < drive.loads.size() ? drive.loads[j] : model::Excitation(), &convention);
         nonlinear_ |= loads_.back().depends_on_motion();
     }
-    for (const model::OwnState& state : drive.states) rates_.emplace_back(&asking, state.rate.get(), 0);
-    for (const model::WantedEvent& event : drive.events) whens_.emplace_back(&asking, event.when.get(), 0);
+    for (const model::OwnState& state : drive.states) rates_.emplace_back(&convention, state.rate.get(), 0);
+    for (const model::WantedEvent& event : drive.events) whens_.emplace_back(&convention, event.when.get(), 0);
     nonlinear_ |= !drive.states.empty();
     all_linear_ = !nonlinear_;
     bristles_.reserve(joints());
@@ -349,12 +349,12 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const model::ContactFriction& friction = joint.friction;
         Contact contact;
         for (const std::size_t side : {0U, 1U}) {
-            if (friction.sliding[side]) contact.sliding[side] = Signal(*friction.sliding[side], &asking);
-            if (friction.holding[side]) contact.holding[side] = Signal(*friction.holding[side], &asking);
+            if (friction.sliding[side]) contact.sliding[side] = Signal(*friction.sliding[side], &convention);
+            if (friction.holding[side]) contact.holding[side] = Signal(*friction.holding[side], &convention);
             nonlinear_ |= contact.sliding[side].depends_on_motion();
             contact.varies |= !contact.holding[side].none() && contact.holding[side].constant_from() == model::never;
         }
-        if (friction.normal) contact.normal = Signal(*friction.normal, &asking);
+        if (friction.normal) contact.normal = Signal(*friction.normal, &convention);
         contact.varies |= !friction.is_constant();
         nonlinear_ |= contact.normal.depends_on_motion() || friction.function != nullptr ||
                       friction.law.depends_on_speed() || !joint.spring.none() || joint.stops ||
@@ -362,15 +362,15 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         const auto* user = friction.law.as<laws::UserLaw>();
         const auto slip = [this, j](const Moment& at) { return velocity(j, at.y) - belt(j, at.t, at.side); };
         if (friction.function != nullptr) {
-            contact.law.emplace(&asking, friction.function.get(), Piecewise::Law{false, slip});
+            contact.law.emplace(&convention, friction.function.get(), Piecewise::Law{false, slip});
         } else if (user != nullptr && user->function->has_pieces()) {
-            contact.law.emplace(&asking, user->function.get(), Piecewise::Law{true, slip});
+            contact.law.emplace(&convention, user->function.get(), Piecewise::Law{true, slip});
         }
         const auto* spring = joint.spring.as<model::springs::UserSpring>();
         if (spring != nullptr && spring->function->has_pieces()) {
             const auto turned = [this, j](const Moment& at) { return angle(j, at.y); };
             const auto speed = [this, j](const Moment& at) { return clear_speed(j, at.y); };
-            contact.spring.emplace(&asking, spring->function.get(), Piecewise::Law{true, turned, 1, speed});
+            contact.spring.emplace(&convention, spring->function.get(), Piecewise::Law{true, turned, 1, speed});
         }
         contact.bristle = friction.bending();
         const bool bends = contact.bristle != nullptr, steady = !friction.law.depends_on_speed();
@@ -389,7 +389,7 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
         rubs_.push_back(friction.none() || bends ? 0 : 1);
         const bool touches = rubs_.back() != 0 || bends || !friction.sliders.empty() || joint.rigid;
         const bool stands = drive.belts[j].most() == 0;
-        belts_.emplace_back(touches && !stands ? drive.belts[j] : model::Excitation(), &asking);
+        belts_.emplace_back(touches && !stands ? drive.belts[j] : model::Excitation(), &convention);
         has_belts_ |= !belts_.back().none();
     }
     for (std::size_t j = 0; j < joints(); ++j) {
@@ -411,11 +411,12 @@ Mechanics::Mechanics(const model::System& system, const model::Drive& drive, con
     add(base_);
     has_functions_ = samples_functions() || !rates_.empty() || !whens_.empty();
     for (std::size_t j = 0; j < joints(); ++j)
-        has_functions_ = has_functions_ || asked_spring(j).function != nullptr || asked_law(j).function != nullptr;
+        has_functions_ =
+            has_functions_ || spring_function(j).function != nullptr || law_function(j).function != nullptr;
 }
 
-/// Except at breaks it is evaluated at t itself: a small step aside could change it within rounding, and a mass with
-/// the velocity of its belt would slide.
+/// Except at breaks the belt is evaluated at t itself: a small step aside could change it within rounding, and a mass
+/// with the velocity of its belt would slide.
 double Mechanics::belt(std::size_t joint, double t, Side side) const {
     if (belts_[joint].none()) return 0;
     const bool breaks = side != Side::at && (belts_[joint].next_break(std::nextafter(t, -model::never)) == t ||
@@ -541,13 +542,13 @@ double Mechanics::law_friction(std::size_t joint, const Moment& at, const Mode& 
     return -model::sign_of(how.way) * sliding(joint, present, velocity(joint, at.y) - belt, at);
 }
 
-Mechanics::Asked Mechanics::asked_spring(std::size_t joint) const {
+Mechanics::UserPiece Mechanics::spring_function(std::size_t joint) const {
     const auto* spring = system_.joints[joint].spring.as<model::springs::UserSpring>();
     const auto& held = contacts_[joint].spring;
-    return spring == nullptr ? Asked{} : Asked{spring->function.get(), held ? held->piece() : nullptr};
+    return spring == nullptr ? UserPiece{} : UserPiece{spring->function.get(), held ? held->piece() : nullptr};
 }
 
-Mechanics::Asked Mechanics::asked_law(std::size_t joint) const {
+Mechanics::UserPiece Mechanics::law_function(std::size_t joint) const {
     const model::ContactFriction& friction = system_.joints[joint].friction;
     const auto* user = model::user_law(friction.law);
     const auto& held = contacts_[joint].law;
@@ -730,8 +731,8 @@ void Mechanics::each_function(const std::function<void(model::UserFunction&)>& c
 }
 
 void Mechanics::call_unread(const Moment& at, const Mode& mode) const {
-    const auto is_unread = [](const Asked& asked) {
-        return asked.function != nullptr && asked.function->read() == nullptr;
+    const auto is_unread = [](const UserPiece& own) {
+        return own.function != nullptr && own.function->read() == nullptr;
     };
     for_each_signal([&](const Signal& s) { s.call_unread(at); });
     for (const model::Body& body : system_.bodies) {
@@ -741,16 +742,16 @@ void Mechanics::call_unread(const Moment& at, const Mode& mode) const {
         });
     }
     for (std::size_t k = 0; k < rates_.size(); ++k) {
-        if (is_unread(asked_rate(k))) static_cast<void>(rates_[k].value(at));
+        if (is_unread(rate_function(k))) static_cast<void>(rates_[k].value(at));
     }
     for (std::size_t e = 0; e < whens_.size(); ++e) {
-        if (is_unread(asked_when(e))) static_cast<void>(when(e, at));
+        if (is_unread(when_function(e))) static_cast<void>(when(e, at));
     }
     for (std::size_t j = 0; j < joints(); ++j) {
-        if (!is_unread(asked_spring(j)) && !is_unread(asked_law(j))) continue;
+        if (!is_unread(spring_function(j)) && !is_unread(law_function(j))) continue;
         static_cast<void>(joint_torque(j, at, mode, belt(j, at.t, at.side)));
         const bool sticks = mode.rubs[j] != 0 && mode.friction[j].way == model::Motion::stuck;
-        if (sticks && is_unread(asked_law(j))) static_cast<void>(holding(j, model::Motion::forward, at));
+        if (sticks && is_unread(law_function(j))) static_cast<void>(holding(j, model::Motion::forward, at));
     }
 }
 

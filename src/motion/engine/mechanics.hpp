@@ -23,7 +23,7 @@ constexpr std::size_t index(int place) {
 struct Floor {
     std::vector<double> noise;     ///< detected roughness
     std::vector<double> greatest;  ///< greatest value so far; only a small part of it is accepted as noise
-    /// Returns the greatest noise of torques on the first n, the bodies.
+    /// Returns the greatest noise of the torques on the n bodies.
     double noise_of_torques(std::size_t n) const {
         return *std::max_element(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(n));
     }
@@ -35,9 +35,9 @@ struct Slipping {
     bool leaving = false;   ///< at slip 0, about to slip
     bool riding = false;    ///< at slip 0 because other joints hold; its friction is at the limit
     std::size_t range = 0;  ///< speed range of its law while it slides
-    double blunt = 0;       ///< excess over the limit needed for the next release, after a release without motion
-    /// Nonzero if loads jump at slip 0 and drive the joint back from both sides. The limit of each direction then
-    /// counts for the loads at this slip in that direction.
+    double margin = 0;      ///< excess over the limit needed for the next release, after a release without motion
+    /// The slip for which loads are evaluated on both sides, if loads that jump at slip 0 drive the joint back from
+    /// both; otherwise 0. The limit of each direction then applies to the loads at this slip in that direction.
     double beside = 0;
     /// Whether the loads at slip 0 would release the joint, so that it leaves when the loads of one side overcome
     /// sliding friction.
@@ -83,7 +83,7 @@ struct Frame {
     std::vector<double> inertia;          ///< inertia of each group
     std::vector<Edge> edges;              ///< ordered: the other bodies of an edge come first
     std::vector<std::size_t> closing;     ///< holding joints that close loops
-    std::vector<std::size_t> redundant;   ///< joints of these that are linearly dependent
+    std::vector<std::size_t> redundant;   ///< those of `closing` that are linearly dependent
     Eigen::MatrixXd sharing;              ///< with loops: share of each holding joint in the torques on bodies
     std::vector<std::size_t> sharing_of;  ///< joints of the rows of `sharing`
     double longest = model::never;        ///< longest stretch that resolves the vibrations of its groups, time units
@@ -117,7 +117,7 @@ Eigen::VectorXd least_in_box(const Eigen::MatrixXd& G, const Eigen::VectorXd& g,
 
 class Mechanics : text::NotCopied {
 public:
-    Mechanics(const model::System& system, const model::Drive& drive, const Asking& asking);
+    Mechanics(const model::System& system, const model::Drive& drive, const CallConvention& convention);
     ~Mechanics() = default;
 
     const model::System& system() const { return system_; }
@@ -131,7 +131,7 @@ public:
     const model::BendingLaw* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
     /// The joints with bristles.
     const std::vector<std::size_t>& bristles() const { return bristles_; }
-    /// A Jenkins element: a dry slider behind a spring. `bend` is the index of its deflection in y.
+    /// A Jenkins element: a dry slider behind a spring.
     struct Slider {
         std::size_t joint, bend;  ///< index of its deflection in y
         double stiffness, limit;
@@ -154,7 +154,7 @@ public:
     }
     /// Returns whether torques or rates depend on the motion other than through constant coefficients.
     bool nonlinear() const { return nonlinear_; }
-    /// Returns whether its friction law is native and has constant parameters.
+    /// Returns whether the joint's friction law is native and has constant parameters.
     bool is_native(std::size_t joint) const { return contacts_[joint].native; }
     /// Returns whether the spring is a user's function with known conditions, which may jump.
     bool spring_may_jump(std::size_t joint) const { return contacts_[joint].spring.has_value(); }
@@ -299,19 +299,20 @@ public:
             if (when.has_pieces()) f(when);
         }
     }
-    /// The user's state of which this is the rate.
+    /// Returns the user's state with this rate function; empty if there is none.
     std::optional<std::size_t> state_of(const Piecewise& rate) const {
         const auto found =
             std::find_if(rates_.begin(), rates_.end(), [&rate](const Piecewise& each) { return &each == &rate; });
         return found == rates_.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - rates_.begin()));
     }
-    /// The joint of which this function is a load, a limit of friction or the normal load.
+    /// Returns the joint of which this function is a load, a spring, a limit of friction or the normal load; empty if
+    /// there is none.
     [[nodiscard]] std::optional<std::size_t> joint_of(const Piecewise& function, double t);
     /// Passes the direction of sliding to users' friction laws.
-    void let_laws_act(const Mode& mode) {
+    void set_law_directions(const Mode& mode) {
         for (std::size_t j = 0; j < contacts_.size(); ++j) {
             const Slipping& how = mode.friction[j];
-            if (contacts_[j].law) contacts_[j].law->act(how.riding ? 0 : model::sign_of(how.way));
+            if (contacts_[j].law) contacts_[j].law->set_direction(how.riding ? 0 : model::sign_of(how.way));
         }
     }
     /// Returns whether some user function of the motion has unknown pieces.
@@ -324,16 +325,18 @@ public:
     /// have the values of this moment.
     void call_unread(const Moment& at, const Mode& mode) const;
     /// A user function and its current piece, for the inspection of formulas.
-    struct Asked {
+    struct UserPiece {
         model::UserFunction* function = nullptr;
         const model::terms::Piece* piece = nullptr;
     };
-    Asked asked_rate(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
+    UserPiece rate_function(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].piece()}; }
     /// The rate function on the other side of the surface along which the state slides.
-    Asked asked_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
-    Asked asked_when(std::size_t event) const { return {drive_.events[event].when.get(), whens_[event].piece()}; }
-    Asked asked_spring(std::size_t joint) const;
-    Asked asked_law(std::size_t joint) const;
+    UserPiece rate_function_beyond(std::size_t k) const { return {drive_.states[k].rate.get(), rates_[k].beyond()}; }
+    UserPiece when_function(std::size_t event) const {
+        return {drive_.events[event].when.get(), whens_[event].piece()};
+    }
+    UserPiece spring_function(std::size_t joint) const;
+    UserPiece law_function(std::size_t joint) const;
     const Signal& base_signal() const { return base_; }
     const Signal& belt_signal(std::size_t joint) const { return belts_[joint]; }
     /// Visits the signals that limit or drive a joint's friction in a mode, with the derivative of the torque with

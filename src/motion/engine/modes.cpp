@@ -67,8 +67,9 @@ class Beside {
 public:
     explicit Beside(const Moving& given)
         : given_(given),
-          asking_{.named = given.system.named, .told = 2 * given.system.bodies.size() + given.drive.states.size()},
-          mechanics_(given.system, given.drive, asking_) {
+          convention_{.named = given.system.named,
+                      .passed = 2 * given.system.bodies.size() + given.drive.states.size()},
+          mechanics_(given.system, given.drive, convention_) {
         const std::size_t joints = mechanics_.joints();
         y_ = given.drive.theta0;
         y_.insert(y_.end(), given.drive.velocity0.begin(), given.drive.velocity0.end());
@@ -91,7 +92,7 @@ public:
         std::vector<double> offsets;
         frame_->offsets(belts_, mode_, offsets);
         for (std::size_t i = 0; i < bodies(); ++i) y_[bodies() + i] = offsets[i];
-        mechanics_.let_laws_act(mode_);
+        mechanics_.set_law_directions(mode_);
         // The deflections of bristles without slip and of slider springs follow their joints' angles.
         for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) free_.push_back(2 * bodies() + k);
         for (std::size_t b = 0; b < mechanics_.bristles().size(); ++b) {
@@ -290,7 +291,7 @@ private:
     }
 
     const Moving& given_;
-    Asking asking_;
+    CallConvention convention_;
     Mechanics mechanics_;
     Mode mode_;
     std::optional<Frame> frame_;

@@ -75,7 +75,7 @@ private:
         while ((to - from) * cheb::widest_gap > angle_.finest_detail(from, to).apart) halve();
         std::pair<double, Piece> best;
         double least = model::never;
-        Told told = Told::unknown;
+        Agreement agreement = Agreement::unknown;
         for (int look = 0, in_vain = 0; look < most_looks && in_vain < patience; ++look) {
             const double h = (to - from) / 2;
             if (look > 0 && (!(from + h > from) || !(from + h < to))) break;
@@ -91,7 +91,8 @@ private:
             const double late = std::max(std::fabs(from), std::fabs(to));
             const double allowed = enough * (rounding * size + lost_in_time(series, late, h, size)) + smallest;
             const bool smooth = tail <= allowed || tail <= allowed + enough * rounded_at(from + h);
-            if (told == Told::strays) least = model::never;  // a series that missed a detail is not a reference
+            if (agreement == Agreement::strays)
+                least = model::never;  // a series that missed a detail is not a reference
             ++in_vain;
             const double off = smooth ? 0 : tail / size;
             if (!std::isfinite(size) || smooth || off < least / 2) {
@@ -100,16 +101,16 @@ private:
                 for (double& c : slope) c /= h;
                 best = {from, {to, h, slope}};
             }
-            told = smooth ? by_series(series, from, h) : Told::unknown;
-            if (!std::isfinite(size) || (smooth && told != Told::strays)) break;
+            agreement = smooth ? agreement_with(series, from, h) : Agreement::unknown;
+            if (!std::isfinite(size) || (smooth && agreement != Agreement::strays)) break;
             halve();
         }
-        if (told != Told::all) gap_ = std::max(gap_, 2 * best.second.h * cheb::widest_gap);
+        if (agreement != Agreement::proven) gap_ = std::max(gap_, 2 * best.second.h * cheb::widest_gap);
         return best;
     }
 
-    /// The rounding of the steps of the angle's formulas, which is large in the foot of a narrow peak: that of
-    /// exp(-576) is 576 times that of 1.
+    /// Returns the rounding of the angle's formulas at t. It is large in the foot of a narrow peak: the relative
+    /// rounding of exp(-576) is 576 times that of 1.
     double rounded_at(double t) {
         double sum = 0;
         for (const model::Component& c : angle_.components()) {
@@ -124,19 +125,19 @@ private:
         return sum;
     }
 
-    enum class Told { unknown, strays, all };
+    enum class Agreement { unknown, strays, proven };
     /// Decides whether the functions of the angle follow the series between its nodes.
-    Told by_series(const Series& series, double from, double h) {
+    Agreement agreement_with(const Series& series, double from, double h) {
         constexpr double clearly = 64, roundings_inside = 16, few_roundings = 16;
         constexpr int search_budget = 64;
         const double late = std::max(std::fabs(from), std::fabs(from + 2 * h));
-        Told told = Told::all;
+        Agreement agreement = Agreement::proven;
         for (const model::Component& c : angle_.components()) {
             const auto* script = std::get_if<model::Scripted>(&c.term);
-            if (script == nullptr || c.gain == 0 || told == Told::strays) continue;
+            if (script == nullptr || c.gain == 0 || agreement == Agreement::strays) continue;
             model::Formula* formula = script->function->read();
             if (formula == nullptr || formula->gave_up()) {
-                told = Told::unknown;
+                agreement = Agreement::unknown;
                 continue;
             }
             unseen_.begin(*formula, nullptr);
@@ -145,12 +146,12 @@ private:
             double allowed =
                 (clearly * (4 * rounding * size + lost_in_time(series, late, h, size)) + smallest) / std::fabs(c.gain);
             if (const double rounded = unseen_.rounded(); std::isfinite(rounded)) allowed += few_roundings * rounded;
-            if (unseen_.is_shown(allowed, 0)) continue;
+            if (unseen_.certainly_follows(allowed, 0)) continue;
             const auto found = unseen_.search({}, search_budget, [=](const Series&) { return allowed; });
-            if (found.place) told = Told::strays;
-            if (!found.place && !found.proven) told = Told::unknown;
+            if (found.place) agreement = Agreement::strays;
+            if (!found.place && !found.proven) agreement = Agreement::unknown;
         }
-        return told;
+        return agreement;
     }
 
     model::Excitation angle_;
@@ -160,8 +161,8 @@ private:
     std::map<double, Piece> pieces_;  // by the time at which they begin
 };
 
-Moving::Moving(const model::System& given, const model::Drive& asked, double start, double longest)
-    : system(given), drive(asked) {
+Moving::Moving(const model::System& given, const model::Drive& its_drive, double start, double longest)
+    : system(given), drive(its_drive) {
     drive.loads.resize(system.joints.size());
     for (std::size_t i = 0; i < given.bodies.size(); ++i) {
         const auto& moved = given.bodies[i].moved;

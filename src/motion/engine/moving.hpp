@@ -18,7 +18,7 @@ struct Moving {
     model::Drive drive;
 
     /// `longest` is the longest piece over which prescribed angles are sampled, time units.
-    Moving(const model::System& given, const model::Drive& asked, double start, double longest);
+    Moving(const model::System& given, const model::Drive& its_drive, double start, double longest);
     /// The widest distance of two samples of a prescribed angle between which its motion is not proven, time units; 0
     /// if none.
     double gap() const;

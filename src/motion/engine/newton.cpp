@@ -146,9 +146,10 @@ double norm_of(const Matrix& A) {
     return A.cwiseAbs().colwise().sum().maxCoeff();
 }
 
-/// The norm of A - 1 (unit matrix) if the inverse is accurate to rounding; otherwise 0.
+/// Returns twice the norm of A minus the unit matrix, plus rounding, if the inverse is accurate to rounding; otherwise
+/// 0.
 template <class Matrix>
-double size_if_well(const Matrix& A, const Matrix& inverse) {
+double off_if_accurate(const Matrix& A, const Matrix& inverse) {
     // limit of condition per row: the error of an inverse is at most its condition times rounding
     constexpr double well = 18.75;
     if (!(norm_of(A) * norm_of(inverse) < well * static_cast<double>(A.rows()))) return 0;
@@ -253,21 +254,21 @@ void Newton::find_linear(const Frame& frame) {
     }
 }
 
-void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const {
-    left.resize(right.size());
+void Newton::Factors::solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& solution) const {
+    solution.resize(rhs.size());
     if (inverse.rows() == static_cast<Eigen::Index>(inner)) {
-        multiply(inverse.data(), right.data(), inner, left.data());
+        multiply(inverse.data(), rhs.data(), inner, solution.data());
         return;
     }
     if (inverse.size() > 0) {
-        left.noalias() = inverse * right;
+        solution.noalias() = inverse * rhs;
         return;
     }
     const IntegrationModes& each = integration_modes();
     constexpr auto size = static_cast<Eigen::Index>(inner);
-    const Eigen::Index rows = right.size() / size;
+    const Eigen::Index rows = rhs.size() / size;
     for (Eigen::Index r = 0; r < rows; ++r) {
-        multiply(each.from_nodes.data(), right.data() + r * size, inner, left.data() + r * size);
+        multiply(each.from_nodes.data(), rhs.data() + r * size, inner, solution.data() + r * size);
     }
     thread_local std::vector<Complex> in_order;
     in_order.resize(static_cast<std::size_t>(rows));
@@ -275,21 +276,21 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
         const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
         for (std::size_t k = 0; k < order.size(); ++k) {
             const Eigen::Index at = order[k] * size;
-            in_order[k] = {left(at + real), imaginary < 0 ? 0 : left(at + imaginary)};
+            in_order[k] = {solution(at + real), imaginary < 0 ? 0 : solution(at + imaginary)};
         }
         const Eigen::Index numbers = rows * (2 * band + 1);
         solve_band(of_modes.data() + static_cast<Eigen::Index>(i) * numbers, rows, band, in_order.data());
         for (std::size_t k = 0; k < order.size(); ++k) {
             const Eigen::Index at = order[k] * size;
-            left(at + real) = in_order[k].real();
-            if (imaginary >= 0) left(at + imaginary) = in_order[k].imag();
+            solution(at + real) = in_order[k].real();
+            if (imaginary >= 0) solution(at + imaginary) = in_order[k].imag();
         }
     }
     for (std::size_t i = 0; i < each.values.size() && band < 0; ++i) {
         const Eigen::Index real = each.places[i].first, imaginary = each.places[i].second;
         for (Eigen::Index r = 0; r < rows; ++r) {
-            in_order[static_cast<std::size_t>(r)] = {left(r * size + real),
-                                                     imaginary < 0 ? 0 : left(r * size + imaginary)};
+            in_order[static_cast<std::size_t>(r)] = {solution(r * size + real),
+                                                     imaginary < 0 ? 0 : solution(r * size + imaginary)};
         }
         const std::complex<double>* matrix = of_modes.data() + static_cast<Eigen::Index>(i) * rows * rows;
         for (Eigen::Index r = 0; r < rows; ++r) {
@@ -297,12 +298,12 @@ void Newton::Factors::solve(const Eigen::VectorXd& right, Eigen::VectorXd& left)
             for (Eigen::Index c = 0; c < rows; ++c) {
                 sum += matrix[c * rows + r] * in_order[static_cast<std::size_t>(c)];
             }
-            left(r * size + real) = sum.real();
-            if (imaginary >= 0) left(r * size + imaginary) = sum.imag();
+            solution(r * size + real) = sum.real();
+            if (imaginary >= 0) solution(r * size + imaginary) = sum.imag();
         }
     }
     for (Eigen::Index r = 0; r < rows; ++r) {
-        multiply(each.to_nodes.data(), left.data() + r * size, inner, left.data() + r * size);
+        multiply(each.to_nodes.data(), solution.data() + r * size, inner, solution.data() + r * size);
     }
 }
 
@@ -394,7 +395,7 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     const bool linear = slopes_.rows() <= few && !mechanics_.nonlinear();
     const auto serves = [h, linear](std::pair<const double, Factors>& of) {
         if (std::fabs(of.first - h) > 1e-6 * h) return false;
-        return !linear || of.second.inverse.size() > 0 || ++of.second.asked < often;
+        return !linear || of.second.inverse.size() > 0 || ++of.second.uses < often;
     };
     if (last_factors_ != nullptr && serves(*last_factors_)) return last_factors_->second;
     auto found = factors_.lower_bound(h * (1 - 1e-6));
@@ -421,7 +422,7 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
     last_factors_ = &*found;
     if (linear && rows == 1) {
         const Inner A = block(0, 0), inverse = inverse_of(A);
-        made.inverse = inverse, made.off = size_if_well(A, inverse);
+        made.inverse = inverse, made.off = off_if_accurate(A, inverse);
         return made;
     }
     if (linear && known) {
@@ -429,7 +430,7 @@ const Newton::Factors& Newton::factors(double h, const Frame& frame) {
         for (Eigen::Index r = 0; r < rows; ++r) {
             for (Eigen::Index c = 0; c < rows; ++c) A.block<inner, inner>(r * size, c * size) = block(r, c);
         }
-        made.inverse = algebra::inverse(A), made.off = size_if_well(A, made.inverse);
+        made.inverse = algebra::inverse(A), made.off = off_if_accurate(A, made.inverse);
         return made;
     }
     if (rows >= few_unknowns && order_.empty()) find_order(groups);

@@ -57,14 +57,15 @@ private:
     /// pair), and steps are accurate to ten digits. For a chain, and for very many unknowns, these matrices are banded
     /// in the order of `order`.
     struct Factors {
-        int asked = 0;  ///< number of uses
+        int uses = 0;  ///< number of uses
         Eigen::MatrixXd inverse;
-        double off = 0;  ///< norm of the matrix minus the unit matrix, if the inverse is accurate to rounding
+        /// bound of the relative change of the matrix with h, if the inverse is accurate to rounding; otherwise 0
+        double off = 0;
         /// inverses in column-major order, or L and U by rows, for each eigenvalue
         std::vector<std::complex<double>> of_modes;
         Eigen::Index band = -1;           ///< half band width of L and U; -1: inverses
         std::vector<Eigen::Index> order;  ///< order of the unknowns in L and U
-        void solve(const Eigen::VectorXd& right, Eigen::VectorXd& left) const;
+        void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& solution) const;
     };
     void find_linear(const Frame& frame);
     const Factors& factors(double h, const Frame& frame);

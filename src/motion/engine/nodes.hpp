@@ -46,7 +46,7 @@ struct NodeTimes {
     }
 };
 
-/// A small step aside that survives rounding in a user's arithmetic (see model/excitation.cpp).
+/// Returns t, moved to this side by a step that survives rounding in a user's arithmetic (see model/excitation.cpp).
 inline double towards(double t, Side side) {
     constexpr double few_ulps = 4 * std::numeric_limits<double>::epsilon();
     const double hair = std::max(1e-300, few_ulps * std::fabs(t));

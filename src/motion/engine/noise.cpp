@@ -49,7 +49,7 @@ Noise::Noise(const Mechanics& mechanics) : mechanics_(mechanics) {
     }
 }
 
-void Noise::pass(const Segment& s) {
+void Noise::note_resolved(const Segment& s) {
     for (std::size_t k = 0; k < may_be_rough_.size(); ++k) {
         if (may_be_rough_[k] == 0) continue;
         floor_.greatest[k] = std::max(floor_.greatest[k], greatest(acting(s, k)));
@@ -62,7 +62,7 @@ void Noise::pass(const Segment& s) {
     }
 }
 
-double Noise::clear(double tolerance) const {
+double Noise::notable(double tolerance) const {
     double most = 0;
     for (std::size_t i = 0; i < mechanics_.bodies(); ++i) {
         const double noise = std::max(tolerated_[i], floor_.noise[i]);
@@ -73,12 +73,12 @@ double Noise::clear(double tolerance) const {
 
 bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const std::vector<double>& sizes,
                   Proofs& proofs) {
-    const Asked asked{s, mode, tolerance, sizes, proofs};
+    const Unresolved stretch{s, mode, tolerance, sizes, proofs};
     std::vector<double> known;
     bool any = false;
     for (std::size_t i = 0; i < may_be_rough_.size(); ++i) {
         if (may_be_rough_[i] == 0) continue;
-        const auto noise = measured(i, asked, known);
+        const auto noise = measured(i, stretch, known);
         if (!noise) continue;
         floor_.noise[i] = *noise, found_on_[i] = s.h, tolerated_[i] = std::max(tolerated_[i], *noise);
         any = true;
@@ -87,28 +87,28 @@ bool Noise::found(const Segment& s, const Mode& mode, double tolerance, const st
 }
 
 /// Returns the torque on a body, or its load alone if `of_time`, or the rate of a state.
-double Noise::value(std::size_t of, bool of_time, const Asked& asked, double t) const {
+double Noise::value(std::size_t of, bool of_time, const Unresolved& stretch, double t) const {
     const std::size_t n = mechanics_.bodies();
     std::vector<double> y, loads, belts(mechanics_.joints()), torques, rates(mechanics_.states());
-    asked.segment.state(asked.segment.start.until(t) / asked.segment.h - 1, y);
+    stretch.segment.state(stretch.segment.start.until(t) / stretch.segment.h - 1, y);
     const Moment at{t, Side::at, y};
     if (of >= n) {
-        mechanics_.rates(at, rates.data(), &asked.mode);
+        mechanics_.rates(at, rates.data(), &stretch.mode);
         return rates[of - n];
     }
     mechanics_.loads_of_time(t, Side::at, loads);
     if (of_time) return loads[of];
     for (std::size_t joint = 0; joint < belts.size(); ++joint) belts[joint] = mechanics_.belt(joint, t, Side::at);
-    mechanics_.torques(at, asked.mode, belts, loads, torques);
+    mechanics_.torques(at, stretch.mode, belts, loads, torques);
     return torques[of];
 }
 
 /// Returns the noise of a body's torque or a state's rate if the stretch shows more than is known. `known` receives the
 /// rounding of formulas when it is first needed.
-std::optional<double> Noise::measured(std::size_t i, const Asked& asked, std::vector<double>& known) {
+std::optional<double> Noise::measured(std::size_t i, const Unresolved& stretch, std::vector<double>& known) {
     constexpr double stays = 0.3, alike = 0.1, varies = 8, above = 3, few_roundings = 16;
     constexpr double of_numbers = 64 * rounding;
-    const Segment& s = asked.segment;
+    const Segment& s = stretch.segment;
     const std::size_t n = mechanics_.bodies();
     const double of_all = cheb::tail(cheb::fit(acting(s, i)));
     const bool of_time = i < n && mechanics_.loads()[i].samples_functions() &&
@@ -116,21 +116,21 @@ std::optional<double> Noise::measured(std::size_t i, const Asked& asked, std::ve
     const Nodes& values = of_time ? s.driven[i] : acting(s, i);
     const double tail = of_time ? cheb::tail(cheb::fit(values)) : of_all;
     const Stalled before = std::exchange(stalled_[i], {s.start.hi, s.h, tail});
-    const double size = i < n ? asked.sizes[i] : greatest(values);
+    const double size = i < n ? stretch.sizes[i] : greatest(values);
     // When a motion decays, the rounding of the terms in its torques remains.
     const double ever = std::max(greatest(values), floor_.greatest[i]);
     const double most = of_time ? most_noise * size
                         : i < n ? most_noise_of_motion * ever
-                                : most_noise_of_rate * asked.tolerance * ever;
+                                : most_noise_of_rate * stretch.tolerance * ever;
     const double noise = floor_.noise[i];
     // A motion that leaves its rest is judged by the rounding of its torques.
-    if (!(tail > std::min(asked.tolerance, few_roundings * rounding) * size)) return {};
+    if (!(tail > std::min(stretch.tolerance, few_roundings * rounding) * size)) return {};
     // The motion may be negligible against the numbers that its functions calculate with.
     const auto is_rounding = [&] {
-        if (known.empty()) known = asked.proofs.roundings(s, asked.mode);
+        if (known.empty()) known = stretch.proofs.roundings(s, stretch.mode);
         return tail <= few_roundings * known[i] && noise < 2 * tail;
     };
-    const auto here = [&](double t) { return value(i, of_time, asked, t); };
+    const auto here = [&](double t) { return value(i, of_time, stretch, t); };
     const bool stalls = before.from == s.start.hi && s.h < 0.95 * before.h && tail > stays * before.tail;
     // A function that is not a formula may calculate with numbers about 1, however small the motion is, and then rounds
     // in steps of that size everywhere.

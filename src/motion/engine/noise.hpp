@@ -12,7 +12,7 @@
 
 namespace dinal::motion::engine {
 
-/// Taken from three short intervals: the greatest and the second greatest Chebyshev tail, and the greatest value.
+/// Roughness on three short intervals: the greatest and the second greatest Chebyshev tail, and the greatest value.
 struct Roughness {
     double most = 0, usual = 0, size = 0;
 
@@ -48,17 +48,17 @@ public:
     bool found(const Segment& segment, const Mode& mode, double tolerance, const std::vector<double>& sizes,
                Proofs& proofs);
     /// Notes the greatest values of a resolved stretch, and forgets noise that a much longer one does not show.
-    void pass(const Segment& segment);
+    void note_resolved(const Segment& segment);
     [[nodiscard]] const Floor& floor() const { return floor_; }
     /// Starts with the noise found by an earlier run of the same system.
-    void know(const Floor& floor) {
+    void start_with(const Floor& floor) {
         if (floor.noise.size() == floor_.noise.size()) floor_ = floor;
     }
-    /// Returns the noise of the noisiest body, torque.
+    /// Returns the noise of the torque on the noisiest body.
     [[nodiscard]] double of_torques() const { return floor_.noise_of_torques(mechanics_.bodies()); }
     /// Returns the greatest noise that was tolerated at any time if it exceeds the tolerance relative to the greatest
     /// torque; otherwise 0.
-    [[nodiscard]] double clear(double tolerance) const;
+    [[nodiscard]] double notable(double tolerance) const;
 
 private:
     /// Returns the torques on a body, or the rates of a state.
@@ -66,16 +66,16 @@ private:
         const std::size_t n = mechanics_.bodies();
         return of < n ? segment.torques[of] : segment.f[n + of];
     }
-    /// An unresolved stretch, and what is known of it.
-    struct Asked {
+    /// The arguments of found().
+    struct Unresolved {
         const Segment& segment;
         const Mode& mode;
         double tolerance;
         const std::vector<double>& sizes;
         Proofs& proofs;
     };
-    [[nodiscard]] double value(std::size_t of, bool of_time, const Asked& asked, double t) const;
-    [[nodiscard]] std::optional<double> measured(std::size_t i, const Asked& asked, std::vector<double>& known);
+    [[nodiscard]] double value(std::size_t of, bool of_time, const Unresolved& stretch, double t) const;
+    [[nodiscard]] std::optional<double> measured(std::size_t i, const Unresolved& stretch, std::vector<double>& known);
     struct Stalled {
         double from = -model::never, h = 0, tail = 0;
     };

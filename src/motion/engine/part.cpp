@@ -123,8 +123,8 @@ Rows rows_at(const model::System& system, const Run& run, std::size_t joint, con
 }
 
 /// Fills in a joint's view of a run: the members from `initial` on.
-void see(Run& run, const model::System& system, const model::Drive& drive, std::size_t joint,
-         const std::optional<model::Oscillator>& seen) {
+void fill_view(Run& run, const model::System& system, const model::Drive& drive, std::size_t joint,
+               const std::optional<model::Oscillator>& seen) {
     const Left& left = *run.left;
     const Place place(system, joint);
     run.initial = {place.weights.sum(drive.theta0), place.weights.sum(drive.velocity0)};
@@ -146,7 +146,7 @@ void complete(Run& run, const model::System& system, const model::Drive& drive,
     if (system.named || !drive.states.empty()) run.own_names = column_names_of(system, drive);
     run.states = drive.states.size();
     for (const model::WantedEvent& wanted : drive.events) run.event_names.push_back(wanted.name);
-    see(run, system, drive, 0, seen);
+    fill_view(run, system, drive, 0, seen);
 }
 
 Run part_of(const model::System& system, const model::Drive& drive, const Run& run, std::size_t joint,
@@ -159,7 +159,7 @@ Run part_of(const model::System& system, const model::Drive& drive, const Run& r
                  [joint](const model::Event& e) { return e.where == static_cast<int>(joint); });
     part.events = Growing<model::Event>(std::move(events));
     part.computed = !system.is_link(joint);
-    see(part, system, drive, joint, seen);
+    fill_view(part, system, drive, joint, seen);
     return part;
 }
 

@@ -185,7 +185,7 @@ PlainSteps::PlainSteps(const Request& problem, const Mechanics& mechanics)
     even_friction_ = mechanics.is_native(0) && !law.depends_on_speed() && joint_.spring.none() && !joint_.stops;
     ranges_.t = model::bounds::anything, ranges_.y.assign(2 + m_, model::bounds::anything);
     for (std::size_t k = 0; possible_ && k < m_; ++k) {
-        const auto range = ranges_.of(mechanics.asked_rate(k).function->read(), nullptr, problem.system.named);
+        const auto range = ranges_.of(mechanics.rate_function(k).function->read(), nullptr, problem.system.named);
         if (range && range->is_one() && std::isfinite(range->lo)) constant_rates_.push_back(range->lo);
     }
     if (constant_rates_.size() < m_) constant_rates_.clear();
@@ -211,20 +211,21 @@ bool PlainSteps::may_begin(const Now& now) const {
            (!now.mode.holds(0) || mechanics_.is_native(0));
 }
 
-bool PlainSteps::take(const Of& of, double until) {
-    const double t = of.now.t.hi;
-    return t == steps_.time(steps_.at(t)) ? of.now.t.lo == 0 && take_steps(of, until) : take_rest_of_step(of, until);
+bool PlainSteps::take(const Parts& parts, double until) {
+    const double t = parts.now.t.hi;
+    return t == steps_.time(steps_.at(t)) ? parts.now.t.lo == 0 && take_steps(parts, until)
+                                          : take_rest_of_step(parts, until);
 }
 
 /// Completes the step that an event has interrupted by a step of the remaining length.
-bool PlainSteps::take_rest_of_step(const Of& of, double until) {
-    const double t = of.now.t.hi, end = steps_.time(steps_.at(t) + 1);
+bool PlainSteps::take_rest_of_step(const Parts& parts, double until) {
+    const double t = parts.now.t.hi, end = steps_.time(steps_.at(t) + 1);
     if (!(end - t > 1e-3 * steps_.h) || !(end < until)) return false;
     const StepTimes whole = std::exchange(steps_, StepTimes({t, end}, end - t));
     const AffineStep map = std::exchange(block_.map, AffineStep(block_.map.w, block_.map.c, end - t));
     const auto sampled = std::exchange(sampled_, {0, 0});
     is_rest_of_step_ = true;
-    const bool took = take_steps(of, until);
+    const bool took = take_steps(parts, until);
     is_rest_of_step_ = false;
     steps_ = whole, block_.map = map;
     // The samples of this step are overwritten.
@@ -232,9 +233,9 @@ bool PlainSteps::take_rest_of_step(const Of& of, double until) {
     return took;
 }
 
-bool PlainSteps::take_steps(const Of& of, double until) {
-    Now& now = of.now;
-    const bool waits = watches_ || of.conditions.any();
+bool PlainSteps::take_steps(const Parts& parts, double until) {
+    Now& now = parts.now;
+    const bool waits = watches_ || parts.conditions.any();
     const std::size_t most = waits ? tries_ : AffineBlock::most;
     const std::size_t n = steps_.at(now.t.hi);
     if (!(n >= sampled_.from && n < sampled_.to &&
@@ -256,9 +257,9 @@ bool PlainSteps::take_steps(const Of& of, double until) {
     const model::Friction& law = joint_.friction.law;
     const bool has_corners = !stands && now.rubs(0) && law.ranges() > 1 && joint_.friction.function == nullptr;
     range_ = has_corners ? law.range(now.mode.friction[0].range) : model::SpeedRange{.from = 0, .to = model::never};
-    if (!begin_functions(of, begin) || !std::isfinite(end_.M)) return false;
+    if (!begin_functions(parts, begin) || !std::isfinite(end_.M)) return false;
     const std::size_t stop = std::min(begin + most, sampled_.to - sampled_.from);
-    const std::size_t end = stands ? rest(of, begin, stop) : move(of, begin, stop, way);
+    const std::size_t end = stands ? rest(parts, begin, stop) : move(parts, begin, stop, way);
     if (waits && end == stop) tries_ = std::min(2 * tries_, AffineBlock::most);
     if (end == begin) return false;
     now.y[0] = block_.theta[end], now.y[1] = block_.velocity[end];
@@ -268,8 +269,8 @@ bool PlainSteps::take_steps(const Of& of, double until) {
     now.after_break = false;
     end_ = {now.t.hi, block_.M[end]};
     Slipping& left = now.mode.friction[0];
-    left.leaving = false, left.blunt = 0;
-    of.contacts.of[0].edge = 0, of.contacts.of[0].leaves_wall = false;
+    left.leaving = false, left.margin = 0;
+    parts.contacts.of[0].edge = 0, parts.contacts.of[0].leaves_wall = false;
     return true;
 }
 
@@ -288,21 +289,21 @@ bool PlainSteps::find_rates(const Mode& mode, const Moment& at, double* rates, d
 }
 
 /// Evaluates the functions at the start of a sequence of steps.
-bool PlainSteps::begin_functions(const Of& of, std::size_t i) {
+bool PlainSteps::begin_functions(const Parts& parts, std::size_t i) {
     if (affine_ && m_ == 0) return true;
-    const Moment at{of.now.t.hi, of.now.side(), of.departing};
-    if (!find_rates(of.now.mode, at, slopes_.data(), affine_ ? end_.M : block_.M[i])) return false;
-    std::copy_n(of.now.y.begin() + 2, m_, states(i));
+    const Moment at{parts.now.t.hi, parts.now.side(), parts.departing};
+    if (!find_rates(parts.now.mode, at, slopes_.data(), affine_ ? end_.M : block_.M[i])) return false;
+    std::copy_n(parts.now.y.begin() + 2, m_, states(i));
     std::copy_n(slopes_.begin() + 2, m_, rates(i));
     if (affine_) return true;
-    block_.theta[i] = of.now.y[0], block_.velocity[i] = of.now.y[1];
+    block_.theta[i] = parts.now.y[0], block_.velocity[i] = parts.now.y[1];
     accelerations_[i] = slopes_[1], end_.M = block_.M[i];
     return true;
 }
 
 /// Makes step i of the classical method. Returns false if a value is not finite or, with a direction, if the velocity
 /// may leave it or reach a corner of the friction law.
-bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
+bool PlainSteps::step_functions(const Parts& parts, std::size_t i, double direction) {
     const std::size_t size = 2 + m_;
     const double h = steps_.h, t = time(i);
     const std::array<double, 4> along{0, h / 2, h / 2, h};
@@ -320,13 +321,13 @@ bool PlainSteps::step_functions(const Of& of, std::size_t i, double direction) {
         for (std::size_t k = 0; k < size; ++k) point_[k] = value(k) + along[stage] * before[k];
         if (leaves(point_[1])) return false;
         const double at = stage + 1 < along.size() ? t + h / 2 : time(i + 1);
-        if (!find_rates(of.now.mode, {at, Side::at, point_}, slopes_.data() + stage * size, M)) return false;
+        if (!find_rates(parts.now.mode, {at, Side::at, point_}, slopes_.data() + stage * size, M)) return false;
     }
     const double* k = slopes_.data();
     for (std::size_t j = 0; j < size; ++j)
         point_[j] = value(j) + h / 6 * (k[j] + 2 * k[size + j] + 2 * k[2 * size + j] + k[3 * size + j]);
     if (leaves(point_[1])) return false;
-    if (!find_rates(of.now.mode, {time(i + 1), Side::at, point_}, slopes_.data(), M)) return false;
+    if (!find_rates(parts.now.mode, {time(i + 1), Side::at, point_}, slopes_.data(), M)) return false;
     // the velocity may have dipped below zero
     if (direction * accelerations_[i] < 0 && direction * slopes_[1] > 0) return false;
     block_.theta[i + 1] = point_[0], block_.velocity[i + 1] = point_[1];
@@ -352,9 +353,9 @@ bool PlainSteps::clear_of_walls(std::size_t i, double reach) const {
 
 /// Returns whether certainly no user event and no change of a condition happens in these steps. Between the ends of a
 /// step, values may change by twice as much as the rates at its ends indicate.
-bool PlainSteps::is_calm(const Of& of, std::size_t first, std::size_t last) {
+bool PlainSteps::is_calm(const Parts& parts, std::size_t first, std::size_t last) {
     const double h = steps_.h;
-    const bool stands = of.now.mode.holds(0);
+    const bool stands = parts.now.mode.holds(0);
     ranges_.t = {time(first), time(last)};
     const auto range = [&](auto&& value, auto&& rate) {
         double low = value(first), high = low, fastest = 0;
@@ -371,16 +372,16 @@ bool PlainSteps::is_calm(const Of& of, std::size_t first, std::size_t last) {
         ranges_.y[2 + k] =
             range([&](std::size_t i) { return states(i)[k]; }, [&](std::size_t i) { return rates(i)[k]; });
     }
-    return of.users.stay_clear(ranges_) && of.conditions.stay_clear(ranges_, of.now.here());
+    return parts.users.stay_clear(ranges_) && parts.conditions.stay_clear(ranges_, parts.now.here());
 }
 
 /// Returns the step up to which certainly nothing happens from `first` on.
-std::size_t PlainSteps::calm_until(const Of& of, std::size_t first, std::size_t last) {
-    if (first == last || (!watches_ && !of.conditions.any()) || is_calm(of, first, last)) return last;
+std::size_t PlainSteps::calm_until(const Parts& parts, std::size_t first, std::size_t last) {
+    if (first == last || (!watches_ && !parts.conditions.any()) || is_calm(parts, first, last)) return last;
     std::size_t calm = first, busy = last;
     while (busy - calm > 1) {
         const std::size_t middle = calm + (busy - calm) / 2;
-        (is_calm(of, calm, middle) ? calm : busy) = middle;
+        (is_calm(parts, calm, middle) ? calm : busy) = middle;
     }
     tries_ = std::max<std::size_t>(1, calm - first);
     return calm;
@@ -388,11 +389,11 @@ std::size_t PlainSteps::calm_until(const Of& of, std::size_t first, std::size_t 
 
 /// Moves in one direction from step `begin` of the block on; without dry friction it also turns. Returns the step at
 /// which it stops, at most `stop`.
-std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, Motion way) {
+std::size_t PlainSteps::move(const Parts& parts, std::size_t begin, std::size_t stop, Motion way) {
     const std::size_t n = sampled_.from;
-    const bool rubs = of.now.rubs(0);
-    if (affine_) block_.begin(begin, stop, {of.now.y[0], of.now.y[1]}, end_.M, friction_);
-    if (!rubs && of.recorder.heading()[0] == Motion::stuck) of.recorder.head(0, of.now.y[1]);
+    const bool rubs = parts.now.rubs(0);
+    if (affine_) block_.begin(begin, stop, {parts.now.y[0], parts.now.y[1]}, end_.M, friction_);
+    if (!rubs && parts.recorder.heading()[0] == Motion::stuck) parts.recorder.set_heading(0, parts.now.y[1]);
     std::size_t first = begin, i = begin;  // rows are written up to step `first`
     for (;;) {
         const double direction = rubs ? model::sign_of(way) : model::sign_of(model::motion_of(block_.velocity[i]));
@@ -401,7 +402,7 @@ std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, 
             i = block_.step(i, stop, direction);
             for (std::size_t k = from; m_ > 0 && k < i; ++k) step_states(k);
         } else {
-            while (direction != 0 && i < stop && step_functions(of, i, direction)) ++i;
+            while (direction != 0 && i < stop && step_functions(parts, i, direction)) ++i;
         }
         const auto fastest = [&](std::size_t since) {
             double most = 0;
@@ -410,19 +411,20 @@ std::size_t PlainSteps::move(const Of& of, std::size_t begin, std::size_t stop, 
         };
         const double reach = joint_.any_walls() != nullptr ? 2 * fastest(first) : 0;
         while (i > first && !(clear_of_walls(i, reach) && std::isfinite(block_.theta[i] + block_.velocity[i]))) --i;
-        if (i > from) i = calm_until(of, from, i);
-        const std::size_t good = rows(of, n, first, i, false);
-        if (std::exchange(i, good) != good || rubs || i == stop || !clear_of_walls(i, reach) || !turn(of, n, i)) break;
+        if (i > from) i = calm_until(parts, from, i);
+        const std::size_t good = rows(parts, n, first, i, false);
+        if (std::exchange(i, good) != good || rubs || i == stop || !clear_of_walls(i, reach) || !turn(parts, n, i))
+            break;
         first = i++;
     }
-    keep(of, begin, i, false);
+    keep(parts, begin, i, false);
     return i;
 }
 
 /// Without dry friction, continues through a step in which the velocity clearly changes its sign once, and records the
 /// turn.
-bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
-    if (!affine_ && !step_functions(of, i, 0)) return false;
+bool PlainSteps::turn(const Parts& parts, std::size_t n, std::size_t i) {
+    if (!affine_ && !step_functions(parts, i, 0)) return false;
     const model::State y = block_.at(i), y1 = affine_ ? block_.end_of(i) : block_.at(i + 1);
     const double h = steps_.h, a = acceleration(i, y), a1 = acceleration(i + 1, y1);
     const double direction = model::sign_of(model::motion_of(y.velocity));
@@ -430,18 +432,18 @@ bool PlainSteps::turn(const Of& of, std::size_t n, std::size_t i) {
     const double M = affine_ ? std::fabs(block_.forcing[i]) : std::fabs(block_.M[i]) * block_.inverse_inertia;
     const double least = clearly * (block_.map.w * std::fabs(y.theta) + M) + 1e-280;
     const bool once = direction * a < -least && direction * a1 < -least && direction * y1.velocity < 0;
-    if (!once || of.recorder.heading()[0] != model::motion_of(direction)) return false;
+    if (!once || parts.recorder.heading()[0] != model::motion_of(direction)) return false;
     const StepInterpolant motion(h, y, a, y1, a1);
     const auto zero = first_velocity_zero(direction, h, y.velocity, a, y1.velocity, a1);
     if (!zero) return false;
     block_.theta[i + 1] = y1.theta, block_.velocity[i + 1] = y1.velocity;
     if (affine_) step_states(i);
-    if (calm_until(of, i, i + 1) == i) return false;
+    if (calm_until(parts, i, i + 1) == i) return false;
     const double x = TurnInStep(motion, h, *zero).x, t = steps_.time(n + i) + x;
     const model::State there{motion(x).theta, 0};
-    of.recorder.report_event(
+    parts.recorder.report_event(
         {.event = {.t = t, .kind = model::EventKind::turn, .theta = there.theta, .M = M_at(i, t, there)}});
-    of.recorder.head(0, -direction);
+    parts.recorder.set_heading(0, -direction);
     return true;
 }
 
@@ -463,12 +465,12 @@ void PlainSteps::put_state(std::size_t i, double t, const model::State& y) {
 }
 
 /// Stands still as long as the pull is well within the limits.
-std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) {
-    const Moment here = of.now.here();
+std::size_t PlainSteps::rest(const Parts& parts, std::size_t begin, std::size_t stop) {
+    const Moment here = parts.now.here();
     const double forward = mechanics_.holding(0, Motion::forward, here);
     const double backward = mechanics_.holding(0, Motion::backward, here);
     if (!std::isfinite(forward + backward)) return begin;
-    const double theta = of.now.y[0];
+    const double theta = parts.now.y[0];
     const double held = joint_.stiffness * theta + joint_.spring.torque(theta);
     Hold hold(forward, backward, held, end_.M);
     std::size_t i = begin;
@@ -479,7 +481,7 @@ std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) 
     stand_at(i), block_.M[i] = end_.M;
     for (; i < stop; ++i) {
         if (affine_) step_states(i);
-        if (!affine_ && m_ > 0 && !step_functions(of, i, 0)) break;
+        if (!affine_ && m_ > 0 && !step_functions(parts, i, 0)) break;
         stand_at(i + 1);
         if (!affine_) {
             block_.samples[2 * i] = M_at(i, time(i) + steps_.h / 2, {theta, 0});
@@ -488,15 +490,15 @@ std::size_t PlainSteps::rest(const Of& of, std::size_t begin, std::size_t stop) 
         if (!hold.lasts(block_.samples[2 * i], block_.samples[2 * i + 1])) break;
         block_.M[i + 1] = block_.samples[2 * i + 1];
     }
-    i = rows(of, sampled_.from, begin, calm_until(of, begin, i), true);
-    keep(of, begin, i, true);
+    i = rows(parts, sampled_.from, begin, calm_until(parts, begin, i), true);
+    keep(parts, begin, i, true);
     return i;
 }
 
 /// Writes the rows of these steps. Returns the step at one of whose rows M is not finite, otherwise `last`.
-std::size_t PlainSteps::rows(const Of& of, std::size_t n, std::size_t first, std::size_t last, bool stands) {
+std::size_t PlainSteps::rows(const Parts& parts, std::size_t n, std::size_t first, std::size_t last, bool stands) {
     for (std::size_t i = first; i < last;) {
-        const double t = of.recorder.next_row_time(), end = steps_.time(n + i + 1);
+        const double t = parts.recorder.next_row_time(), end = steps_.time(n + i + 1);
         if (!(t < steps_.time(n + last))) return last;
         if (!(t < end)) {
             i = std::max(i + 1, std::min(steps_.at(t) - n, last));
@@ -513,14 +515,14 @@ std::size_t PlainSteps::rows(const Of& of, std::size_t n, std::size_t first, std
         }
         if (m_ > 0 || !affine_) put_state(i, t, y);
         double friction = stands ? joint_.stiffness * y.theta + joint_.spring.torque(y.theta) - M : 0.0 - friction_;
-        if (!stands && !even_friction_) friction = mechanics_.friction(0, {t, Side::at, point_}, of.now.mode, 0);
-        of.recorder.put_row(t, y, M, friction, std::span(point_).subspan(2));
+        if (!stands && !even_friction_) friction = mechanics_.friction(0, {t, Side::at, point_}, parts.now.mode, 0);
+        parts.recorder.put_row(t, y, M, friction, std::span(point_).subspan(2));
     }
     return last;
 }
 
 /// Stores these steps of the block in the history.
-void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool stands) {
+void PlainSteps::keep(const Parts& parts, std::size_t first, std::size_t last, bool stands) {
     if (first == last || !problem_.limits.dense) return;
     const std::size_t n = sampled_.from;
     const double from = steps_.time(n + first), length = steps_.time(n + last) - from;
@@ -539,13 +541,13 @@ void PlainSteps::keep(const Of& of, std::size_t first, std::size_t last, bool st
         kept.remade = std::make_shared<StepsAgain>(block_, steps_, n, first, last, friction_, M_,
                                                    std::vector(states(first), states(first) + m_), constant_rates_);
     } else {
-        kept.remade =
-            std::make_shared<StepsKept>(steps_, n + first, last - first, joint_.damping, made(of, first, last, stands));
+        kept.remade = std::make_shared<StepsKept>(steps_, n + first, last - first, joint_.damping,
+                                                  made(parts, first, last, stands));
     }
-    of.recorder.keep(std::move(kept));
+    parts.recorder.keep(std::move(kept));
 }
 
-Made PlainSteps::made(const Of& of, std::size_t first, std::size_t last, bool stands) {
+Made PlainSteps::made(const Parts& parts, std::size_t first, std::size_t last, bool stands) {
     Made made{.m = m_};
     for (auto* each : {&made.accelerations, &made.M, &made.friction, &made.middle_M, &made.middle_friction}) {
         each->reserve(last - first + 1);
@@ -554,7 +556,7 @@ Made PlainSteps::made(const Of& of, std::size_t first, std::size_t last, bool st
     const auto friction_at = [&](std::size_t i, double t, const model::State& y) {
         if (stands || even_friction_) return friction_;
         put_state(i, t, y);
-        return -mechanics_.friction(0, {t, Side::at, point_}, of.now.mode, 0);
+        return -mechanics_.friction(0, {t, Side::at, point_}, parts.now.mode, 0);
     };
     const double h = steps_.h;
     for (std::size_t i = first; i <= last; ++i) {

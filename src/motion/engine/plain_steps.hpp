@@ -21,7 +21,7 @@ class PlainSteps {
 public:
     PlainSteps(const Request& problem, const Mechanics& mechanics);
 
-    struct Of {
+    struct Parts {
         Now& now;
         const std::vector<double>& departing;  ///< state for functions that jump at slip 0
         Contacts& contacts;
@@ -33,29 +33,29 @@ public:
     /// Returns whether plain steps are possible from here.
     bool may_begin(const Now& now) const;
     /// Takes steps that end before `until`. Returns whether it took any.
-    bool take(const Of& of, double until);
+    bool take(const Parts& parts, double until);
     /// Returns the longest time between two samples of M.
     double gap() const { return steps_.h / 2; }
 
 private:
-    std::size_t move(const Of& of, std::size_t begin, std::size_t stop, model::Motion way);
-    bool turn(const Of& of, std::size_t n, std::size_t i);
-    std::size_t rest(const Of& of, std::size_t begin, std::size_t stop);
+    std::size_t move(const Parts& parts, std::size_t begin, std::size_t stop, model::Motion way);
+    bool turn(const Parts& parts, std::size_t n, std::size_t i);
+    std::size_t rest(const Parts& parts, std::size_t begin, std::size_t stop);
     bool clear_of_walls(std::size_t i, double reach) const;
-    [[nodiscard]] bool is_calm(const Of& of, std::size_t first, std::size_t last);
-    std::size_t calm_until(const Of& of, std::size_t first, std::size_t last);
-    std::size_t rows(const Of& of, std::size_t n, std::size_t first, std::size_t last, bool stands);
-    void keep(const Of& of, std::size_t first, std::size_t last, bool stands);
-    Made made(const Of& of, std::size_t first, std::size_t last, bool stands);
+    [[nodiscard]] bool is_calm(const Parts& parts, std::size_t first, std::size_t last);
+    std::size_t calm_until(const Parts& parts, std::size_t first, std::size_t last);
+    std::size_t rows(const Parts& parts, std::size_t n, std::size_t first, std::size_t last, bool stands);
+    void keep(const Parts& parts, std::size_t first, std::size_t last, bool stands);
+    Made made(const Parts& parts, std::size_t first, std::size_t last, bool stands);
     double M_at(std::size_t i, double t, const model::State& y);
     void put_state(std::size_t i, double t, const model::State& y);
 
-    bool take_steps(const Of& of, double until);
-    bool take_rest_of_step(const Of& of, double until);
+    bool take_steps(const Parts& parts, double until);
+    bool take_rest_of_step(const Parts& parts, double until);
     // Steps that evaluate functions.
     bool find_rates(const Mode& mode, const Moment& at, double* rates, double& M) const;
-    bool begin_functions(const Of& of, std::size_t i);
-    bool step_functions(const Of& of, std::size_t i, double direction);
+    bool begin_functions(const Parts& parts, std::size_t i);
+    bool step_functions(const Parts& parts, std::size_t i, double direction);
     void step_states(std::size_t i);
     double time(std::size_t i) const { return steps_.time(sampled_.from + i); }
     double acceleration(std::size_t i, const model::State& y) const {

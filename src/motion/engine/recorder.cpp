@@ -43,7 +43,7 @@ void Recorder::report_user_event(const Now& now, std::size_t event) {
 void Recorder::report_event(const Reported& told) {
     constexpr double clearly_later = 1e-3;
     const Event& event = told.event;
-    if (told.holds_again && is_none(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
+    if (told.holds_again && withdraw(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
     if (contact::only_touched(recent_, {event, told.slid, told.way, told.off, told.size}, unit_)) return;
     if (!recent_.empty() && event.t - recent_.back().t > clearly_later * unit_) write_recent();
     recent_.push_back(event);
@@ -60,12 +60,12 @@ void Recorder::report_slide(const Now& now, const SlideChange& change) {
                                             : std::pair(EventKind::slide_ends, EventKind::slide_begins);
     for (std::size_t j = 0; j < own_joints(); ++j) {
         if (change.joint && *change.joint != j) continue;
-        if (!is_none(other, j, now.t.hi)) report_event(now, own, j);
+        if (!withdraw(other, j, now.t.hi)) report_event(now, own, j);
     }
 }
 
 /// Withdraws an event of this kind at this time. Returns whether there was one.
-bool Recorder::is_none(EventKind kind, std::size_t joint, double t) {
+bool Recorder::withdraw(EventKind kind, std::size_t joint, double t) {
     const auto told = std::find_if(recent_.rbegin(), recent_.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
     });

@@ -37,18 +37,18 @@ public:
         return !recent_.empty() && recent_.back().user >= 0 && recent_.back().t == t;
     }
     /// Reports that a load, or the rate of a state (for all joints), begins or ends to slide along a condition. A begin
-    /// and an end at the same instant cancel, and a continued run does not report a begin at its start.
+    /// and an end at the same instant cancel; none is reported at the start of a run.
     void report_slide(const Now& now, const SlideChange& change);
     /// Withdraws the slip of a joint that was released at this time but did not move.
-    void withdraw_slip(std::size_t joint, double t) { is_none(model::EventKind::slip, joint, t); }
+    void withdraw_slip(std::size_t joint, double t) { withdraw(model::EventKind::slip, joint, t); }
     /// Records the turns of bodies without dry friction, which do not affect the motion. `sizes` and `noise` of the
     /// torques determine which velocities count as zero.
     void record_turns(const Stretch& of, double until, const TorqueSizes& sizes, double noise);
 
     /// The direction of motion of each body without dry friction.
     const std::vector<model::Motion>& heading() const { return heading_; }
-    void head(std::size_t body, double velocity) { heading_[body] = model::motion_of(velocity); }
-    void go_on_with(const std::vector<model::Motion>& heading) { heading_ = heading; }
+    void set_heading(std::size_t body, double velocity) { heading_[body] = model::motion_of(velocity); }
+    void set_headings(const std::vector<model::Motion>& heading) { heading_ = heading; }
 
     // Rows.
     /// Writes the rows of a stretch until `end`. Returns false, like the others, if a value is not finite.
@@ -71,13 +71,13 @@ public:
 
     // Beginning and end.
     void begin(const Now& now) { left_->start = now.y, left_->begun = now.mode; }
-    /// Notes that contacts were released at the very start, of which no event tells.
+    /// Notes that contacts were released at the very start, which no event reports.
     void begin_released(const Mode& mode) { left_->begun = mode; }
     void finish(const Now& now, const Contacts& contacts, std::shared_ptr<const Carry> carry);
 
 private:
     void end_events(model::Outcome outcome, const Mode& mode, const Contacts& contacts);
-    bool is_none(model::EventKind kind, std::size_t joint, double t);
+    bool withdraw(model::EventKind kind, std::size_t joint, double t);
     void write_recent();
     /// Writes the row at the point x of the segment; x = -2 means the present.
     bool put_row(const Stretch& of, double t, double x);

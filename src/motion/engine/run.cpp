@@ -34,10 +34,11 @@ constexpr double beyond_all = std::numeric_limits<double>::max() / 1e7;
 Engine::Engine(const Request& problem, Run& result)
     : problem_(problem),
       result_(result),
-      asking_{.named = problem.system.named, .told = 2 * problem.system.bodies.size() + problem.drive.states.size()},
-      mechanics_(problem.system, problem.drive, asking_),
+      convention_{.named = problem.system.named,
+                  .passed = 2 * problem.system.bodies.size() + problem.drive.states.size()},
+      mechanics_(problem.system, problem.drive, convention_),
       now_{.t = {problem.window.start, 0}},
-      contacts_{.of = std::vector<Contacts::Of>(mechanics_.joints())},
+      contacts_{.of = std::vector<Contacts::Contact>(mechanics_.joints())},
       walls_(problem.system),
       breaks_(mechanics_),
       projection_(mechanics_, own_joints()),
@@ -58,24 +59,24 @@ Engine::Engine(const Request& problem, Run& result)
         if (!problem.before->low.empty()) now_.low = problem.before->low;
         now_.mode = problem.before->mode;
         for (std::size_t j = 0; j < joints; ++j) contacts_.of[j].leaned = now_.mode.leans[j] != 0;
-        for (std::size_t j = 0; j < joints; ++j) mechanics_.loads()[j].remember(problem.before->controllers[j]);
-        breaks_.go_on_with(problem.before->echoes);
-        if (!problem.before->watches.empty()) users_.go_on_with(problem.before->watches);
+        for (std::size_t j = 0; j < joints; ++j) mechanics_.loads()[j].restore(problem.before->controllers[j]);
+        breaks_.set_echoes(problem.before->echoes);
+        if (!problem.before->watches.empty()) users_.set_watches(problem.before->watches);
     }
     now_.keep_rigid_places(problem_.system);
     set_pace();
     recorder_.emplace(problem, mechanics_, result, now_, pace_.unit);
-    if (problem.before != nullptr && !problem.before->heading.empty()) recorder_->go_on_with(problem.before->heading);
-    asking_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
+    if (problem.before != nullptr && !problem.before->heading.empty()) recorder_->set_headings(problem.before->heading);
+    convention_.past = [this](double t, Side side) { return recorder_->history()->at(t, side); };
     frames_.emplace(mechanics_, problem.longest, pace_.longest);
-    conditions_.emplace(mechanics_, *frames_, asking_.told, now_.t.hi, pace_.unit);
+    conditions_.emplace(mechanics_, *frames_, convention_.passed, now_.t.hi, pace_.unit);
     if (problem.step > 0 || problem.pair != nullptr) {
         solver_ =
             std::make_unique<RungeKutta>(mechanics_, problem.tolerance, pace_.longest, problem.step, problem.pair);
     } else {
         solver_ = std::make_unique<Collocation>(mechanics_, problem.tolerance, pace_.longest);
     }
-    if (problem.before != nullptr) solver_->know(problem.before->floor);
+    if (problem.before != nullptr) solver_->start_with(problem.before->floor);
     balances_.emplace(mechanics_, *conditions_, *solver_);
     if (problem.step > 0) plain_steps_.emplace(problem, mechanics_);
 }
@@ -102,7 +103,7 @@ void Engine::begin() {
         if (!sample_controllers()) fail(Outcome::excitation_not_finite);
         breaks_.echo(now_.t.hi, 1);
         open_and_close();
-        throw_along();
+        align_rigid_velocities();
         // From the start a belt or a moved body carries bodies along that a freewheel keeps from falling behind.
         const std::vector<double> caught = catch_freewheels(true);
         press_stops();
@@ -122,7 +123,7 @@ void Engine::begin() {
         if (outcome_ == Outcome::reached_end) decide(false);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) contacts_.of[j].leaned = now_.mode.leans[j] != 0;
     } else {
-        // What sticks to a belt has its velocity before the break, as at the end of a stretch.
+        // Bodies that stick to a belt have its velocity before the break, as at the end of a stretch.
         project(now_.after_break ? Side::before : Side::at);
         for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
             if (now_.mode.friction[j].creeps == Motion::stuck) continue;
@@ -146,7 +147,7 @@ void Engine::run() {
         }
         alive = advance();
     }
-    if (alive) last_instant();
+    if (alive) handle_events_at_end();
     finish();
 }
 
@@ -170,7 +171,7 @@ bool Engine::advance() {
     if (ending.by != By::nobody && conditions_->any() && comes_early(ending)) return true;
     if (ending.by == By::condition && problem_.step == 0 &&
         !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
-        again(Flow::Attempt::shorten);
+        retry(Flow::Attempt::shorten);
         return outcome_ == Outcome::reached_end;
     }
     users_.advance(ending.x);
@@ -180,8 +181,8 @@ bool Engine::advance() {
     return end_at(ending.x, frame, sampled) && handle(ending);
 }
 
-/// Returns whether joints that hold do not let moved bodies, belts or rigid links keep to their motion on the stretch,
-/// or a freewheel turns backward.
+/// Returns whether holding joints keep moved bodies, belts or rigid links from their motion on the stretch, or a
+/// freewheel turns backward.
 bool Engine::strays_from_prescribed(const Frame& frame) const {
     if (problem_.hidden == 0 && !(mechanics_.has_belts() && problem_.system.has_freewheels())) return false;
     constexpr double clearly = 1e-6;
@@ -227,8 +228,8 @@ bool Engine::solve(const Frame& frame) {
     const bool resolved = attempt == Attempt::resolved;
     if (problem_.step > 0 && resolved && mechanics_.has_belts() && belt_jump_found()) return false;
     const double late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
-    const bool short_of_seen = 2 * segment_.h <= std::max(shortest * pace_.unit, 16 * rounding * late);
-    if (attempt == Attempt::shorten && !solver_->takes_rests() && short_of_seen) {
+    const bool too_short = 2 * segment_.h <= std::max(shortest * pace_.unit, 16 * rounding * late);
+    if (attempt == Attempt::shorten && !solver_->takes_rests() && too_short) {
         if (chatter_.too_many_short()) return fail(Outcome::chattering);
         solver_->pass_over(segment_);
         solver_->find_limits(segment_, now_.mode);
@@ -236,10 +237,10 @@ bool Engine::solve(const Frame& frame) {
         return true;
     }
     if (!resolved) {
-        again(attempt);
+        retry(attempt);
         return false;
     }
-    chatter_.stretch_of(2 * segment_.h);
+    chatter_.note_length(2 * segment_.h);
     const double least = segment_.h < short_part * frame.longest ? 2 : 0;
     const double factor = problem_.step > 0
                               ? frame.longest / segment_.h
@@ -279,9 +280,9 @@ bool Engine::belt_jump_found() {
 
 /// Searches the stretch for its first event.
 Ending Engine::watch(const Frame& frame) {
-    const Guards::Of of{mechanics_, segment_,   frame,     now_,         walls_, sizes_,
-                        *solver_,   *balances_, contacts_, *conditions_, users_};
-    Guards guards(of);
+    const Guards::Parts parts{mechanics_, segment_,   frame,     now_,         walls_, sizes_,
+                              *solver_,   *balances_, contacts_, *conditions_, users_};
+    Guards guards(parts);
     Ending ending = guards.first();
     if (!guards.good()) fail(Outcome::excitation_not_finite);
     for (const std::size_t joint : guards.stay()) hold_again(joint, sizes_.on(joint_at(joint)));
@@ -300,7 +301,7 @@ void Engine::hold_again(std::size_t joint, double torques) {
     std::erase(contacts_.last_full, joint);
     Slipping& how = now_.mode.friction[joint];
     how.way = Motion::stuck, how.leaving = false;
-    if (!goes_on() || Chatter::too_blunt(how, torques)) fail(Outcome::chattering);
+    if (!goes_on() || Chatter::raise_margin(how, torques)) fail(Outcome::chattering);
 }
 
 /// Repeats the stretch up to a condition at x if sampled functions may jump there, too, such as a limit that two
@@ -315,9 +316,9 @@ bool Engine::ends_before(double x) {
     return true;
 }
 
-/// Repeats a stretch with nearly its useful length if its first event is very early, or if what formulas would do
-/// beyond it dwarfs what they do before. A function that acts only in a short window may take a long extrapolation so
-/// far away that the window's end is lost to rounding.
+/// Repeats a stretch with nearly its useful length if its first event is very early, or if rates extrapolated beyond it
+/// dwarf those before. A long extrapolation of a function that acts only in a short window loses the window's end to
+/// rounding.
 bool Engine::comes_early(const Ending& ending) {
     constexpr double early = 1.0 / 64, least = 1.0 / 1024;
     const double part = 1 + ending.x, late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
@@ -412,9 +413,9 @@ bool Engine::arrive(double x, bool whole) {
         conditions_->return_to_surfaces(now_);
         for (Slipping& how : now_.mode.friction) how.leaving = false;
         if (whole) {
-            for (Slipping& how : now_.mode.friction) how.blunt = 0;
+            for (Slipping& how : now_.mode.friction) how.margin = 0;
         }
-        for (Contacts::Of& each : contacts_.of) each.edge = 0, each.leaves_wall = false;
+        for (Contacts::Contact& each : contacts_.of) each.edge = 0, each.leaves_wall = false;
     }
     const bool echoed = breaks_.pass_echoes(now_.t.hi);
     if (!whole || (now_.after_break && !echoed)) breaks_.echo(now_.t.hi, 1);
@@ -432,13 +433,13 @@ bool Engine::sample_controllers() {
     mechanics_.for_each_signal([&](const Signal& s) { samples = samples || s.has_sampled(); });
     if (!samples) return true;
     mechanics_.call_unread(now_.here(), now_.mode);
-    mechanics_.for_each_signal([&](Signal& s) { good = good && s.arrive(now_.here()); });
+    mechanics_.for_each_signal([&](Signal& s) { good = good && s.update_controllers(now_.here()); });
     return good;
 }
 
 /// Makes the velocities of rigidly linked bodies agree after a jump. Friction gives no impulse: a body that only sticks
 /// to one whose velocity jumps slips.
-void Engine::throw_along() {
+void Engine::align_rigid_velocities() {
     const std::vector<char>& rigid = now_.mode.rigid;
     if (problem_.hidden == 0 && std::count(rigid.begin(), rigid.end(), 0) == std::ssize(rigid)) return;
     Mode sticking = now_.mode;
@@ -453,13 +454,13 @@ bool Engine::decide_after_break() {
     // A jump of a prescribed velocity throws all bodies that are linked to it rigidly.
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
-    throw_along();
+    align_rigid_velocities();
     for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
         const std::size_t body = moved_body(j);
         const double v = now_.y[n() + body], jump = v - before[n() + body];
         if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
         recorder_->add_jump(now_.t.hi, body, {.input = kinetic_energy() - energy});
-        recorder_->head(body, v);
+        recorder_->set_heading(body, v);
         conditions_->forget();
         report_event(EventKind::impact, body);
         break;
@@ -475,8 +476,8 @@ double Engine::kinetic_energy() const {
     return sum;
 }
 
-/// Counts as input of a moved body what its impulse has added at an impact of the joint: the change of the kinetic
-/// energy from `before`, and what the impact `lost`.
+/// Counts the work of a moved body's impulse at an impact of the joint as input of that body: the change of the kinetic
+/// energy from `before`, plus the energy `lost` in the impact.
 void Engine::add_work_of_moved(std::size_t joint, double before, double lost) {
     if (problem_.hidden == 0) return;
     const double now = kinetic_energy(), work = now - before + lost;

@@ -9,7 +9,7 @@
 namespace dinal::motion::engine {
 
 /// Makes one step of the groups and states. Dense output: for rk4 the quintic through angles, velocities and
-/// accelerations at both ends, and cubics through values and rates for states; for a pair also its bulge.
+/// accelerations at both ends, and cubics through values and rates for states; for a pair, cubics plus its bulge.
 Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame, const std::vector<double>& departing) {
     constexpr std::size_t middle = node_count / 2, last = node_count - 1;
     const double h = 2 * s.h;
@@ -63,7 +63,7 @@ Flow::Attempt RungeKutta::find(Segment& s, const Mode& mode, const Frame& frame,
         for (std::size_t k = 0; k < size; ++k) z[k] = h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);
         if (!rates(last, z, e)) return Attempt::failed;
     }
-    // In a tiny part of a step angles differ by rounding only, too little for velocities.
+    // In a tiny part of a step angles differ only by rounding, which is too little to determine velocities.
     const bool quintic = h >= 1e-3 * step_ && pair_ == nullptr;
     const auto cubic = [&](std::size_t k, double x) {
         const double v0 = h * a[k], v1 = h * e[k];

@@ -18,20 +18,20 @@ namespace dinal::motion::engine {
 struct Segment : NodeTimes {
     Clock start;
     double end = 0;  ///< end time, exact
-    /// whether formulas are proven to do nothing between the nodes that their series do not show
+    /// whether formulas are proven to follow their series between the nodes
     bool proven = true;
-    bool may_grow = true;                      ///< whether the next stretch may be longer than all before
-    bool slides = false;                       ///< whether a load slides, so that it has the rounding of all torques
-    bool to_the_end = false;                   ///< whether it ends exactly at `end`, even if 2 h is slightly different
-    std::vector<Nodes> y{};                    ///< angles, velocities, states at the nodes
-    std::vector<Nodes> f{};                    ///< rates of y; those of the angles are undefined
-    std::vector<Nodes> moved{};                ///< angles minus the first, more accurate than the difference of y
-    std::vector<double> low{};                 ///< rounding error of each body's angle at the start
-    std::vector<Series> series{};              ///< series of y minus its first value
-    std::vector<Series> rates{};               ///< series of f, except those of the angles
-    std::vector<Nodes> loads{};                ///< time-only part of each joint's load
-    std::vector<Nodes> driven{};               ///< for each body: its whole load, and the inertial torque of the base
-    std::vector<Nodes> torques{};              ///< for each body: all torques except those of sticking joints
+    bool may_grow = true;          ///< whether the next stretch may be longer
+    bool slides = false;           ///< whether a load slides, so that it has the rounding of all torques
+    bool to_the_end = false;       ///< whether it ends exactly at `end`, even if 2 h is slightly different
+    std::vector<Nodes> y{};        ///< angles, velocities, states at the nodes
+    std::vector<Nodes> f{};        ///< rates of y; those of the angles are undefined
+    std::vector<Nodes> moved{};    ///< angles minus the first, more accurate than the difference of y
+    std::vector<double> low{};     ///< rounding error of each body's angle at the start
+    std::vector<Series> series{};  ///< series of y minus its first value
+    std::vector<Series> rates{};   ///< series of f, except those of the angles
+    std::vector<Nodes> loads{};    ///< time-only part of each joint's load
+    std::vector<Nodes> driven{};   ///< for each joint: its whole load, for a body with the inertial torque of the base
+    std::vector<Nodes> torques{};  ///< for each body: all torques except those of sticking joints
     std::vector<Nodes> belts{}, belt_rates{};  ///< velocity and acceleration of each joint's belt
     std::vector<Nodes> holding{};              ///< torque of each sticking joint on its first body
     std::vector<Series> holding_series{};      ///< the same as series, if the torque is compared with a limit
@@ -60,9 +60,9 @@ struct Segment : NodeTimes {
         for (std::size_t j = 0; j < node_count; ++j) values[j] = value(moment(j, room));
         return values;
     }
-    /// The function of the moment as a function of the point x.
+    /// Returns a function of the moment as a function of the point x.
     template <class Value>
-    auto anywhere(const Value& value, std::vector<double>& room) const {
+    auto function_of_x(const Value& value, std::vector<double>& room) const {
         return [&](double x) {
             state(x, room);
             return value(Moment{time(x), Side::at, room});
@@ -70,7 +70,8 @@ struct Segment : NodeTimes {
     }
 };
 
-/// Causes that end a stretch. A kink: a normal load passes 0; a bend: the slip of bristles does.
+/// Causes that end a stretch. A kink: a normal load passes 0; a bend: the slip of bristles does; stays: a released
+/// joint does not move.
 enum class By { nobody, slip, release, wall, stop, slider, corner, relay, user, kink, bend, stays, condition };
 
 struct Ending {
@@ -83,7 +84,8 @@ struct Ending {
     std::vector<std::size_t> users = {};  ///< user events at this instant, in the order of their definition
     /// function and index of each condition that changes
     std::vector<std::pair<Piecewise*, std::size_t>> conditions = {};
-    /// whether some margin at the start exceeds the rounding there, but not that over the stretch
+    /// whether a crossed condition was clear of rounding at the start: a crossing there comes from the rounding of a
+    /// long stretch
     bool blurred = false;
     /// Returns the latest point for user events and conditions. Those very close to a standstill, release or wall
     /// count as later: a value that is zero at a wall is not passed.

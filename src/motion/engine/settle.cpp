@@ -85,7 +85,7 @@ std::optional<Engine::Passages> Engine::next_passages(std::size_t joint, const N
 bool Engine::put_on_surface(const Conditions::Crossed::Back& back, std::size_t joint, Now& still, double far,
                             double speed, double later) {
     constexpr double hardly = 1e-3;
-    // Of a step of a staircase, the surface may be at either end.
+    // The surface of a staircase's step may be at either end of the step.
     Piecewise function = *back.function;
     const std::size_t step = function.conditions()[back.condition].step;
     function.decide(still.here(), 0);

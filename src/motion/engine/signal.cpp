@@ -56,8 +56,8 @@ void Piecewise::leave(std::size_t condition) {
 }
 
 double Piecewise::sliding(const Moment& at) const {
-    if (slide_->asked == Slide::Side::own) return on(piece_, at, nullptr);
-    if (slide_->asked == Slide::Side::beyond) return on(slide_->beyond, at, nullptr);
+    if (slide_->used == Slide::Side::own) return on(piece_, at, nullptr);
+    if (slide_->used == Slide::Side::beyond) return on(slide_->beyond, at, nullptr);
     const double own = on(piece_, at, nullptr), share = slide_->share(at);
     return own + share * (on(slide_->beyond, at, nullptr) - own);
 }
@@ -78,8 +78,9 @@ double Piecewise::margin_rate(model::Formula& of, const Moment& at, std::span<co
         return turns * of.margin_rate(piece_, slide_->condition, law_->slip(at), {}, {}, {}, {});
     }
     const std::size_t count = of.state_count();
-    return of.margin_rate(piece_, slide_->condition, time(at), asking_->state(at.y), asking_->states(at.y).first(count),
-                          asking_->state(rates), asking_->states(rates).first(count));
+    return of.margin_rate(piece_, slide_->condition, time(at), convention_->state(at.y),
+                          convention_->states(at.y).first(count), convention_->state(rates),
+                          convention_->states(rates).first(count));
 }
 
 std::pair<double, double> Piecewise::margin(const Moment& at, std::span<const double> rates) const {
@@ -116,8 +117,8 @@ bool Piecewise::keeps(std::size_t condition, const Ranges& ranges, bool named) c
     return range && (range->lo > 0 || range->hi < 0);
 }
 
-Signal::Signal(const model::Excitation& excitation, const Asking* asking)
-    : excitation_(excitation), asking_(asking), memory_(excitation.components().size()) {
+Signal::Signal(const model::Excitation& excitation, const CallConvention* convention)
+    : excitation_(excitation), convention_(convention), memory_(excitation.components().size()) {
     for (const model::Component& c : excitation_.components()) {
         Part part{.component = &c,
                   .sampled = model::controller_of<model::SampledController>(c),
@@ -131,7 +132,7 @@ Signal::Signal(const model::Excitation& excitation, const Asking* asking)
         samples_functions_ |= part.function != nullptr || part.delayed != nullptr || switches_by_function;
         changes_in_time_ |= (part.function != nullptr && !part.of_motion) || part.delayed != nullptr;
         if (part.of_motion) {
-            const Piecewise made(asking_, part.function->function.get(), part.function->delay);
+            const Piecewise made(convention_, part.function->function.get(), part.function->delay);
             if (made.has_pieces()) held_.push_back(parts_.size());
             part.piecewise = made;
         }
@@ -150,14 +151,14 @@ double Signal::value_of(std::size_t i, const Moment& at) const {
     if (part.piecewise) return part.piecewise->value(at);
     if (part.function != nullptr) {
         const double t = towards(at.t - part.function->delay, at.side);
-        return asking_->evaluate_at(*part.function->function, t, at.y);
+        return convention_->evaluate_at(*part.function->function, t, at.y);
     }
     if (part.relay != nullptr) return part.relay->levels[memory_[i].on ? 0 : 1];
     if (part.sampled != nullptr) return memory_[i].output;
     if (part.delayed != nullptr) {
         // A delayed jump returns at a rounded time, so the past is evaluated slightly before or after it.
         const double t = towards(at.t, at.side);
-        return asking_->evaluate_at(*part.delayed->function, t, asking_->past(t - part.delayed->by, at.side));
+        return convention_->evaluate_at(*part.delayed->function, t, convention_->past(t - part.delayed->by, at.side));
     }
     const double t = at.side == Side::before ? std::nextafter(at.t, -model::never) : at.t;
     return std::visit(
@@ -271,7 +272,7 @@ void Signal::begin(const Moment& at, const std::vector<std::string>& names) {
     }
 }
 
-bool Signal::arrive(const Moment& at) {
+bool Signal::update_controllers(const Moment& at) {
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         const auto* sampled = parts_[i].sampled;
         if (sampled == nullptr) continue;
@@ -286,7 +287,7 @@ bool Signal::arrive(const Moment& at) {
         take();
         while (instant() <= at.t) {
             sampled->function->use(memory.own);
-            const double output = asking_->evaluate_at(*sampled->function, at.t, at.y);
+            const double output = convention_->evaluate_at(*sampled->function, at.t, at.y);
             if (!std::isfinite(output)) return false;
             memory.pending.emplace_back(instant() + sampled->delay, output);
             ++memory.instant;
@@ -306,7 +307,7 @@ Signal::Switching Signal::switching(std::size_t relay) const {
 double Signal::until_switch(std::size_t relay, const Moment& at) const {
     const auto [sign, level, place] = switching(relay);
     const double measured =
-        place ? at.y[*place] : asking_->evaluate_at(*parts_[relays_[relay]].relay->function, at.t, at.y);
+        place ? at.y[*place] : convention_->evaluate_at(*parts_[relays_[relay]].relay->function, at.t, at.y);
     return sign * (measured - level);
 }
 

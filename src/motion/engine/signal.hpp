@@ -24,7 +24,7 @@
 
 namespace dinal::motion::engine {
 
-/// Bounds of a motion over some steps, and of formulas on it.
+/// Bounds of the motion over some steps, which give bounds of formulas.
 struct Ranges {
     model::bounds::Interval t;
     std::vector<model::bounds::Interval> y{};  ///< ranges of all entries of y
@@ -41,14 +41,15 @@ struct Moment {
     double t;
     Side side;
     std::span<const double> y;
-    bool freely = false;         ///< whether functions that do not slide are evaluated directly, not on their pieces
-    double slow = model::never;  ///< springs are so only at joints no faster than this: others pass a jump anyway
+    bool freely = false;  ///< whether functions that do not slide are evaluated directly, not on their pieces
+    /// greatest speed of joints whose springs are evaluated so; faster joints pass a jump anyway
+    double slow = model::never;
 };
 
 /// The calling convention of user functions.
-struct Asking {
-    bool named = true;     ///< whether they receive all of y (without bristles) as states
-    std::size_t told = 0;  ///< length of the part of y that is passed
+struct CallConvention {
+    bool named = true;       ///< whether they receive all of y (without bristles) as states
+    std::size_t passed = 0;  ///< length of the part of y that is passed
     /// Returns the motion at an earlier time, for delayed terms.
     std::function<std::vector<double>(double t, Side side)> past = {};
 
@@ -60,14 +61,14 @@ struct Asking {
         return function.value_with(t, state(y), states(y));
     }
     model::State state(std::span<const double> y) const { return named ? model::State{} : model::State{y[0], y[1]}; }
-    std::span<const double> states(std::span<const double> y) const { return y.first(told).subspan(named ? 0 : 2); }
+    std::span<const double> states(std::span<const double> y) const { return y.first(passed).subspan(named ? 0 : 2); }
 };
 
 /// A user's function of the motion. If its conditions are known, it is evaluated on the current piece.
 class Piecewise {
 public:
-    Piecewise(const Asking* asking, model::UserFunction* function, double delay)
-        : asking_(asking), function_(function), delay_(delay), has_pieces_(function->has_pieces()) {}
+    Piecewise(const CallConvention* convention, model::UserFunction* function, double delay)
+        : convention_(convention), function_(function), delay_(delay), has_pieces_(function->has_pieces()) {}
 
     /// A friction law or spring, whose first argument is a speed or an angle, alone or before the other states. It acts
     /// in one direction at a time.
@@ -79,11 +80,12 @@ public:
         std::function<double(const Moment&)> speed = {};
         [[nodiscard]] bool of_angle() const { return speed != nullptr; }
     };
-    Piecewise(const Asking* asking, model::UserFunction* function, Law law) : Piecewise(asking, function, 0) {
+    Piecewise(const CallConvention* convention, model::UserFunction* function, Law law)
+        : Piecewise(convention, function, 0) {
         law_ = std::move(law);
     }
     /// Sets the direction in which it acts.
-    void act(double way) {
+    void set_direction(double way) {
         if (law_->way != way) let_go();
         law_->way = way;
     }
@@ -92,7 +94,7 @@ public:
     struct Slide {
         enum class Side { both, own, beyond };
         std::function<double(const Moment&)> share{};  ///< fraction of the value from beyond
-        Side asked = Side::both;
+        Side used = Side::both;
         model::terms::Piece beyond{};
         std::size_t condition = 0;  ///< index in the function's own piece
         /// First the two limits 0 and 1 of the fraction, then the other conditions of both pieces.
@@ -110,8 +112,8 @@ public:
     double value(const Moment& at) const {
         if (slide_) return sliding(at);
         if (law_) return value(at, law_->way * law_->slip(at));
-        if (piece_.conditions.empty() || at.freely) return asking_->evaluate_at(*function_, time(at), at.y);
-        return function_->value_on(piece_, time(at), asking_->state(at.y), asking_->states(at.y), nullptr);
+        if (piece_.conditions.empty() || at.freely) return convention_->evaluate_at(*function_, time(at), at.y);
+        return function_->value_on(piece_, time(at), convention_->state(at.y), convention_->states(at.y), nullptr);
     }
     /// The value of a law at this speed. At speed 0 it ignores the piece and evaluates the function.
     double value(const Moment& at, double speed) const {
@@ -126,7 +128,7 @@ public:
     /// `again`.
     void decide(const Moment& at, std::uint64_t again) {
         if (!has_pieces_ || (law_ && law_->way == 0) || slide_) return;
-        // Where time alone takes another branch, a piece without conditions gains some.
+        // If time alone selects another branch, a piece without conditions may gain some.
         const bool stays = ~again != 0 && std::none_of(piece_.conditions.begin(), piece_.conditions.end(),
                                                        [again](const auto& c) { return (c.of & again) != 0; });
         if (is_held() && stays && !crossed_) return;
@@ -161,7 +163,7 @@ public:
     const model::terms::Piece* beyond() const { return slide_ ? &slide_->apart[1] : nullptr; }
 
     /// Starts to slide along the first condition that differs between two moments on either side of it and depends on
-    /// these arguments only. The share must be set. Returns false if there is none.
+    /// these arguments only. Returns false if there is none. The caller then sets the share.
     bool slide(const Moment& own, const Moment& beyond, std::uint64_t arguments = ~std::uint64_t{0});
     /// Also watches the other conditions. A condition counts as the same surface if its margin is below `near` and
     /// changes from one side to the other.
@@ -191,18 +193,18 @@ private:
     template <class F>
     std::invoke_result_t<F, double, const model::State&, std::span<const double>> called(const Moment& at, double speed,
                                                                                          F call) const {
-        if (!law_) return call(time(at), asking_->state(at.y), asking_->states(at.y));
+        if (!law_) return call(time(at), convention_->state(at.y), convention_->states(at.y));
         if (law_->alone) return call(speed, model::State{}, std::span<const double>());
         with_speed_.assign(1, speed);
-        const auto states = asking_->states(at.y);
+        const auto states = convention_->states(at.y);
         with_speed_.insert(with_speed_.end(), states.begin(), states.end());
-        return call(time(at), asking_->state(at.y), std::span<const double>(with_speed_));
+        return call(time(at), convention_->state(at.y), std::span<const double>(with_speed_));
     }
 
     /// The speed or angle at which a law is evaluated; 0 for other functions.
     double argument(const Moment& at) const { return law_ ? law_->way * law_->slip(at) : 0; }
 
-    const Asking* asking_;
+    const CallConvention* convention_;
     model::UserFunction* function_;
     double delay_;
     bool has_pieces_, crossed_ = false;
@@ -215,7 +217,7 @@ private:
 class Signal {
 public:
     Signal() = default;
-    Signal(const model::Excitation& excitation, const Asking* asking);
+    Signal(const model::Excitation& excitation, const CallConvention* convention);
 
     bool none() const { return parts_.empty(); }
     /// Returns whether some function depends on the motion.
@@ -231,8 +233,9 @@ public:
     /// The part that depends on time only, including controllers that hold a value.
     double of_time(const Moment& at) const {
         if (!of_time_only_) return sum(at, false);
-        if (at.t != asked_last_.t || at.side != asked_last_.side) asked_last_ = {at.t, at.side, sum(at, false)};
-        return asked_last_.M;
+        if (at.t != last_evaluated_.t || at.side != last_evaluated_.side)
+            last_evaluated_ = {at.t, at.side, sum(at, false)};
+        return last_evaluated_.M;
     }
     double of_motion(const Moment& at) const { return depends_on_motion_ ? sum(at, true) : 0; }
     /// Evaluates of_time() at all nodes of a stretch; NaN from the first value on that is not finite.
@@ -245,7 +248,7 @@ public:
     double next_break(double t) const;
     double view(double t, double spacing) const { return excitation_.view(t, spacing); }
     double constant_from() const { return excitation_.constant_from(); }
-    /// Returns whether it can be evaluated between neighbouring times.
+    /// Returns whether it can be evaluated between two doubles of the time.
     bool takes_rests() const { return excitation_.takes_rests(); }
     /// An upper bound of its magnitude.
     double most() const {
@@ -283,7 +286,7 @@ public:
             if (part.delayed == nullptr || c.gain == 0 || t < c.from || t >= c.to) continue;
             model::Formula* read = part.delayed->function->read();
             if (read == nullptr) continue;
-            f(*read, c.gain, [&](double now) { return asking_->past(now - part.delayed->by, Side::at); });
+            f(*read, c.gain, [&](double now) { return convention_->past(now - part.delayed->by, Side::at); });
         }
     }
     /// Returns whether some function of the motion has unknown pieces.
@@ -317,7 +320,7 @@ public:
     /// Starts a run.
     void begin(const Moment& at, const std::vector<std::string>& names);
     /// Applies pending outputs and sampling instants at the time of `at`. Returns false if one failed.
-    bool arrive(const Moment& at);
+    bool update_controllers(const Moment& at);
     std::size_t relays() const { return relays_.size(); }
     /// Visits the functions of relays that have one.
     template <class F>
@@ -346,7 +349,7 @@ public:
     };
     const std::vector<Memory>& memory() const { return memory_; }
     /// Restores the memory of an earlier run, with copies, as that run may be continued again.
-    void remember(const std::vector<Memory>& memory) {
+    void restore(const std::vector<Memory>& memory) {
         memory_ = memory;
         for (Memory& each : memory_) each.own = model::terms::copied(each.own);
     }
@@ -365,7 +368,7 @@ private:
     double value_of(std::size_t i, const Moment& at) const;
 
     model::Excitation excitation_;
-    const Asking* asking_ = nullptr;
+    const CallConvention* convention_ = nullptr;
     std::vector<Part> parts_;
     std::vector<Memory> memory_;
     std::vector<std::size_t> relays_, held_;
@@ -384,7 +387,7 @@ private:
         double t = nowhen;
         Side side = Side::at;
         double M = 0;
-    } asked_last_{};
+    } last_evaluated_{};
     struct Sampled {
         Nodes values{};  ///< values on the last stretch, resolved or not
         NodeTimes when{};

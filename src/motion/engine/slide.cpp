@@ -91,7 +91,7 @@ void Slides::Sliding::each(const F& call) const {
 }
 
 void Slides::Sliding::use_side(Which which) const {
-    each([which](Piecewise& one) { one.sliding().asked = which; });
+    each([which](Piecewise& one) { one.sliding().used = which; });
 }
 
 /// Adds the beginning or end of the slide of each load, or of a rate if no load slides.
@@ -138,7 +138,7 @@ double Slides::slip_rate(std::size_t joint, const std::vector<double>& rates, co
     return mechanics_.velocity(joint, rates) - belt_rate(joint, at);
 }
 
-/// Returns the margin of a slide with these rates of y.
+/// Returns the margin of a slide and its rate, for these rates of y.
 Slides::Side Slides::side_of(const Sliding& of, const Moment& at, std::vector<double> rates) const {
     Side side{.rates = std::move(rates)};
     std::tie(side.margin, side.rate) = of.function->margin(at, side.rates);
@@ -151,11 +151,11 @@ Slides::Side Slides::side_of(const Sliding& of, const Moment& at, std::vector<do
     return side;
 }
 
-/// Evaluates what each slide changes. All rates are linear in the shares.
+/// Evaluates the rates of y on both sides of each slide. They are linear in the shares.
 Slides::Mixing Slides::mixing(std::vector<const Sliding*> of, const Moment& at) const {
     Mixing all{.of = std::move(of)};
     std::vector<Which> before;
-    for (const Sliding* each : all.of) before.push_back(each->function->sliding().asked), each->use_side(Which::own);
+    for (const Sliding* each : all.of) before.push_back(each->function->sliding().used), each->use_side(Which::own);
     all.own = rates_at(at);
     for (const Sliding* each : all.of) {
         each->use_side(Which::beyond);
@@ -166,7 +166,7 @@ Slides::Mixing Slides::mixing(std::vector<const Sliding*> of, const Moment& at) 
     return all;
 }
 
-/// Adds to the rates what keeps the slides `staying` on their surfaces. Returns their shares.
+/// Adds the mixtures that keep the slides `staying` on their surfaces to the rates. Returns their shares.
 std::vector<double> Slides::keep(const Mixing& all, const std::vector<std::size_t>& staying, const Moment& at,
                                  std::vector<double>& rates) const {
     std::vector<std::vector<double>> rows;
@@ -246,12 +246,12 @@ bool Slides::is_same_surface(const Sliding& of, const Piecewise& other, const Mo
            parallel(angles, std::span(others).subspan(1, n)) && parallel(angles, std::span(others).subspan(1 + n, n));
 }
 
-/// The first slope of a margin whose variables the slide holds: angles, or velocities.
+/// Returns the index of the first slope of a margin whose variables the slide holds: angles, or velocities.
 std::size_t Slides::first_held(const Sliding& of) const {
     return of.of_place ? 1 : 1 + mechanics_.bodies();
 }
 
-/// Returns whether a slide holds no speed, and its surface does not move, but for rounding of the torques: whether
+/// Returns whether a slide holds speed 0 on a surface that does not move, to the rounding of the torques: whether
 /// nothing else in its margin, with these slopes, changes.
 bool Slides::stands_still(const Sliding& of, const std::vector<double>& slopes, const Moment& at) const {
     const std::size_t n = mechanics_.bodies(), first = first_held(of);
@@ -290,7 +290,7 @@ Moment Slides::advance_with_belts(const Moment& at, const Mode& mode, std::vecto
     return later;
 }
 
-/// Returns whether the own side's margin of a motion that contacts hold falls.
+/// Returns whether the margin falls on the own side while contacts hold the motion.
 bool Slides::falls_if_held(const Sliding& of, const Side& own, const Moment& at) const {
     if (!mechanics_.has_belts()) return own.rate < 0;
     std::vector<double> soon(at.y.begin(), at.y.end());
@@ -303,7 +303,7 @@ bool Slides::falls_if_held(const Sliding& of, const Side& own, const Moment& at)
     return of.of_place ? its_rate < 0 : then < of.function->margin(at, own.rates).first;
 }
 
-bool Slides::keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const {
+bool Slides::holds_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const {
     const std::size_t n = mechanics_.bodies();
     if (sliding_.empty()) return false;
     const std::vector<double> carried = carried_by_belts(mode, at);
@@ -345,7 +345,7 @@ void Slides::put_on_surface(const Sliding& of, const Sides& sides, Now& now, dou
     const std::size_t n = mechanics_.bodies();
     const auto& [own, beyond] = sides;
     const double by = (of.of_place ? own.speed : own.margin) / (beyond.rate - own.rate);
-    // What the rounding of a change leaves is none of the motion.
+    // A remainder within the rounding of the change counts as zero.
     const auto add = [](double& value, double change) {
         const double sum = value + change;
         value = std::fabs(sum) > 16 * rounding * std::fabs(change) ? sum : 0;
@@ -371,7 +371,7 @@ void Slides::move_aside(const Sliding& of, double side, std::vector<double>& y) 
 }
 
 /// Moves y off a place, to one side of it. A slow motion is made to leave on that side, so that functions of the
-/// velocity decide, too.
+/// velocity also decide.
 void Slides::move_out(const Sliding& of, double side, std::vector<double>& y) const {
     constexpr double tiny = 1e-12;
     const model::Joint& joint = mechanics_.system().joints[*of.joint];
@@ -395,7 +395,7 @@ std::optional<Slides::Sides> Slides::decide(Sliding& of, const Now& now, const s
     for (std::size_t k = 0; k < rates.size(); ++k) one_side[k] += later * unit_ * rates[k];
     std::vector<double> other_side = one_side;
     const auto apart = [&](std::size_t k, double by) {
-        // Other surfaces part from this one a little later; both sides must be nearer than they.
+        // Along the rates, other surfaces are slightly apart from this one; both sides must be nearer than those.
         const double away = (rates.empty() ? 1 : 1e-3) * near * unit_ * by * of.jump;
         one_side[k] += away, other_side[k] -= away;
     };
@@ -455,7 +455,7 @@ bool Slides::stands(Piecewise& function, const Now& now) const {
 
 /// Finds the sides of a slide. If a sticking contact holds the velocities of the surface, it must be about to slip
 /// along it in one direction.
-std::optional<Slides::Sides> Slides::meet(Sliding& of, const Now& now, const std::vector<double>& rates) {
+std::optional<Slides::Sides> Slides::find_sides(Sliding& of, const Now& now, const std::vector<double>& rates) {
     mode_ = now.mode;
     const bool holds = of.joint && sticks(*of.joint, now);
     if (holds && of.of_place) return {};
@@ -522,7 +522,7 @@ std::vector<std::pair<Piecewise*, Piecewise>> Slides::all_functions(double t) {
     return all;
 }
 
-/// Returns whether a function that is not read jumps at the surface, too: it has no share and would stay on one side.
+/// Returns whether a function that is not read also jumps at the surface: it has no share and would stay on one side.
 bool Slides::others_jump(const Sliding& of, const Now& now, const Sides& sides) const {
     if (!mechanics_.samples_the_motion()) return false;
     constexpr double clearly = 1e-2;
@@ -554,7 +554,7 @@ std::optional<Slides::Begun> Slides::begin(Piecewise& function, const Crossing& 
         now = then;
         return std::nullopt;
     };
-    const auto first = meet(*owner, now, crossing.rates);
+    const auto first = find_sides(*owner, now, crossing.rates);
     if (!first || (owner->of_place && !passes_fade(*owner, now, *first))) return no();
     Begun begun;
     put_on_surface(*owner, *first, now, begun.work);
@@ -571,7 +571,7 @@ void Slides::start(Piecewise& function, Now& now) {
     const auto before = all_functions(now.t.hi);
     Sliding of = *owner_of(function, now.t.hi);
     of.jump = mechanics_.size_of(*of.joint, now.here());
-    const auto sides = meet(of, now, {});
+    const auto sides = find_sides(of, now, {});
     for (const auto& [each, was] : before) *each = was;
     if (sides && sides->own.margin == 0) begin(function, {.jump = of.jump}, now);
 }
@@ -612,7 +612,7 @@ void Slides::end_lost(const Now& now, std::vector<SlideChange>& changes) {
     }
 }
 
-/// The rates of y along another condition of a slide that is crossed: those of the mixture that stays on it, if the
+/// Returns the rates of y along another condition that a slide crosses: those of the mixture that stays on it, if the
 /// loads move the motion across it.
 std::optional<std::vector<double>> Slides::rates_along(const Piecewise& function, std::size_t condition, const Now& now,
                                                        const Sides& sides) const {

@@ -36,7 +36,7 @@ public:
         Changes changes{};
         double work = 0;  ///< work done by the loads when velocities were moved onto the surface
     };
-    /// What is known of a condition that was crossed.
+    /// A condition that was crossed.
     struct Crossing {
         double jump = 0;                 ///< jump of the function
         bool of_place = false;           ///< whether the condition depends on angles and time only
@@ -47,7 +47,7 @@ public:
     std::optional<Begun> begin(Piecewise& function, const Crossing& crossing, Now& now);
     /// Returns whether the slides hold the slip of a joint: whether it depends on what this frame holds and on surfaces
     /// that stand still, and on nothing that moves, such as a belt.
-    [[nodiscard]] bool keep_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
+    [[nodiscard]] bool holds_slip(std::size_t joint, const Mode& mode, const Frame& frame, const Moment& at) const;
     /// Moves the bodies on, with the velocities of those that belts carry along, until a belt that turns now has
     /// clearly moved. Returns that moment.
     Moment advance_with_belts(const Moment& at, const Mode& mode, std::vector<double>& y) const;
@@ -63,11 +63,12 @@ public:
     [[nodiscard]] bool just_left(const Piecewise& function, double t) const {
         return left_at_ == t && left_.has(function);
     }
-    /// Takes the error of a stretch out of the velocities that slides hold: another contact may compare with them.
+    /// Removes the error of a stretch from the velocities that slides hold, because other contacts may be compared with
+    /// them.
     void return_to_surfaces(Now& now) const;
-    /// Continues slides behind a break, or ends them if they are none there.
+    /// Continues slides behind a break, or ends those that do not exist there.
     void renew(Now& now, std::vector<SlideChange>& changes);
-    /// Starts a slide of a motion that stands exactly on the surface and is about to leave it.
+    /// Starts a slide if the motion stands exactly on the surface and is about to leave it.
     void start(Piecewise& function, Now& now);
     /// Handles a changed condition of a slide: ends the slide, or continues it if the condition belongs to one side's
     /// piece. Returns false if this function does not slide.
@@ -77,7 +78,8 @@ public:
 
 private:
     struct Side {
-        double margin = 0, rate = 0;  ///< margin and its rate; at a place, of the margin's rate plus a part of it
+        /// margin and its rate; at a place, a combination of the margin and its rate, and the rate of that rate
+        double margin = 0, rate = 0;
         std::vector<double> rates{};  ///< rates of y
         double off = 0, speed = 0;    ///< at a place: the margin itself and its rate
     };
@@ -145,7 +147,7 @@ private:
     /// Returns whether both sides drive the motion back now, or a little later if it is at the limit now.
     [[nodiscard]] bool drive_back(const Sliding& of, const Now& now, const Sides& sides) const;
     /// Returns the sides if both drive the motion back, otherwise empty.
-    [[nodiscard]] std::optional<Sides> meet(Sliding& of, const Now& now, const std::vector<double>& rates);
+    [[nodiscard]] std::optional<Sides> find_sides(Sliding& of, const Now& now, const std::vector<double>& rates);
     void put_on_surface(const Sliding& of, const Sides& sides, Now& now, double& work) const;
     [[nodiscard]] std::optional<std::vector<double>> rates_along(const Piecewise& function, std::size_t condition,
                                                                  const Now& now, const Sides& sides) const;
@@ -156,7 +158,7 @@ private:
     Mode mode_;
     std::vector<Sliding> sliding_;
     Sliding left_;                    ///< the slide that contacts ended last
-    double left_at_ = -model::never;  ///< when they did
+    double left_at_ = -model::never;  ///< the time at which they did
 };
 
 }  // namespace dinal::motion::engine

@@ -62,7 +62,7 @@ Series on_part(const Series& series, double middle, double half) {
 
 }  // namespace
 
-bool Unseen::is_shown(double allowed, double part) {
+bool Unseen::certainly_follows(double allowed, double part) {
     constexpr double close = 1e-9;
     // conditions that do not depend on the motion change at breaks only
     const bool ranges = piece_ == nullptr && formula_->has_conditions_of_motion();
@@ -79,7 +79,7 @@ bool Unseen::is_shown(double allowed, double part) {
 /// The disc of a value grows by the rounding of each step.
 double Unseen::rounded(std::optional<std::size_t> condition) {
     walk_.begin(*formula_, piece_, false);
-    // What decides a condition may be a small difference, in which the rounding of the arguments remains.
+    // A condition may be decided by a small difference, in which the rounding of the arguments remains.
     const double of_arguments = condition ? model::bounds::roundings_of_a_step * rounding : 0;
     for (const Input& input : inputs_) {
         walk_.set(input.place, {cheb::value(input.series, 0), of_arguments * cheb::size(input.series)}, Interval{});
@@ -194,10 +194,10 @@ private:
     [[nodiscard]] Series time(double delay) const;
     bool give_motion(const model::Formula& formula, const Series* speed = nullptr,
                      const std::vector<Series>* past = nullptr);
-    bool begin(const Mechanics::Asked& asked, const Series& first, const Series* speed = nullptr);
-    void look(double size, double allowed, double part);
-    void look_at(const Signal& signal, double size, double noise);
-    void look_at_past(const Signal& signal, double size, double noise);
+    bool begin(const Mechanics::UserPiece& own, const Series& first, const Series* speed = nullptr);
+    void test(double size, double allowed, double part);
+    void test_signal(const Signal& signal, double size, double noise);
+    void test_delayed(const Signal& signal, double size, double noise);
     [[nodiscard]] bool found(const Unseen::Found& what);
     /// The scale for errors of torques on a body: the torques, and its momentum per half stretch.
     [[nodiscard]] double size_on(std::size_t body) const {
@@ -250,10 +250,10 @@ bool StretchProof::give_motion(const model::Formula& formula, const Series* spee
 }
 
 /// Prepares the test of a function known as a formula. `first` is its first argument.
-bool StretchProof::begin(const Mechanics::Asked& asked, const Series& first, const Series* speed) {
-    model::Formula* formula = good() && asked.function != nullptr ? asked.function->read() : nullptr;
+bool StretchProof::begin(const Mechanics::UserPiece& own, const Series& first, const Series* speed) {
+    model::Formula* formula = good() && own.function != nullptr ? own.function->read() : nullptr;
     if (formula == nullptr) return false;
-    unseen_.begin(*formula, asked.piece);
+    unseen_.begin(*formula, own.piece);
     unseen_.give(0, first);
     return give_motion(*formula, speed);
 }
@@ -266,8 +266,8 @@ bool StretchProof::found(const Unseen::Found& what) {
 
 /// Tests the prepared formula. The error may be `allowed` or the fraction `part` of the value; `size` scales the
 /// rounding of time.
-void StretchProof::look(double size, double allowed, double part) {
-    if (unseen_.is_shown(allowed, part)) return;
+void StretchProof::test(double size, double allowed, double part) {
+    if (unseen_.certainly_follows(allowed, part)) return;
     // In a decayed motion the function's own constants still round.
     constexpr double few_roundings = 16;
     const double rounded = few_roundings * unseen_.rounded();
@@ -292,7 +292,7 @@ void StretchProof::look(double size, double allowed, double part) {
     }));
 }
 
-void StretchProof::look_at(const Signal& signal, double size, double noise) {
+void StretchProof::test_signal(const Signal& signal, double size, double noise) {
     constexpr double always = clearly * 4 * rounding;
     signal.for_each_read(
         s_.time(0), [&](model::Formula& formula, const model::terms::Piece* piece, double delay, double gain) {
@@ -303,12 +303,12 @@ void StretchProof::look_at(const Signal& signal, double size, double noise) {
             const double own = size / std::fabs(gain);
             const double part =
                 std::max(clearly * beside_.tolerance + always, formula.takes_motion() ? of_last_iteration : 0);
-            look(own, part * own + (clearly * noise + smallest) / std::fabs(gain), 0);
+            test(own, part * own + (clearly * noise + smallest) / std::fabs(gain), 0);
         });
 }
 
 /// Tests functions of the past motion. It is smooth on a stretch, because its breaks are repeated as breaks.
-void StretchProof::look_at_past(const Signal& signal, double size, double noise) {
+void StretchProof::test_delayed(const Signal& signal, double size, double noise) {
     signal.for_each_delayed(s_.time(0), [&](model::Formula& formula, double gain, const auto& past_at) {
         if (!good()) return;
         std::vector<Nodes> values;
@@ -323,7 +323,7 @@ void StretchProof::look_at_past(const Signal& signal, double size, double noise)
         unseen_.begin(formula, nullptr);
         unseen_.give(0, time(0));
         if (!give_motion(formula, nullptr, &past)) return;
-        look(size / std::fabs(gain),
+        test(size / std::fabs(gain),
              of_last_iteration * size / std::fabs(gain) + (clearly * noise + smallest) / std::fabs(gain), 0);
     });
 }
@@ -334,10 +334,10 @@ void StretchProof::loads() {
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Weight& first = mechanics_.system().joints[j].of.front();
         const double size = size_on(first.body) / std::fabs(first.by);
-        look_at(mechanics_.loads()[j], size, rough(first.body));
-        look_at_past(mechanics_.loads()[j], size, rough(first.body));
+        test_signal(mechanics_.loads()[j], size, rough(first.body));
+        test_delayed(mechanics_.loads()[j], size, rough(first.body));
     }
-    look_at(mechanics_.base_signal(), slowest, 0);
+    test_signal(mechanics_.base_signal(), slowest, 0);
 }
 
 void StretchProof::rates() {
@@ -345,21 +345,21 @@ void StretchProof::rates() {
         const double size =
             std::max({greatest(s_.y[2 * n_ + k]) / s_.h, greatest(s_.f[2 * n_ + k]), beside_.fastest_rate[k]});
         const double allowed = of_last_iteration * size + clearly * rough(n_ + k) + smallest;
-        if (begin(mechanics_.asked_rate(k), time(0))) look(size, allowed, 0);
-        const Mechanics::Asked beyond = mechanics_.asked_beyond(k);
-        if (beyond.piece != nullptr && begin(beyond, time(0))) look(size, allowed, 0);
+        if (begin(mechanics_.rate_function(k), time(0))) test(size, allowed, 0);
+        const Mechanics::UserPiece beyond = mechanics_.rate_function_beyond(k);
+        if (beyond.piece != nullptr && begin(beyond, time(0))) test(size, allowed, 0);
     }
 }
 
 void StretchProof::events() {
     for (std::size_t e = 0; e < mechanics_.events(); ++e) {
-        if (begin(mechanics_.asked_when(e), time(0))) look(0, smallest, of_last_iteration);
+        if (begin(mechanics_.when_function(e), time(0))) test(0, smallest, of_last_iteration);
     }
     for (const Signal& load : mechanics_.loads()) {
         load.for_each_relay_function([&](model::UserFunction& function) {
             const model::Formula* formula = function.read();
             if (formula == nullptr || formula->has_conditions_of_motion()) return;
-            if (begin({&function}, time(0))) look(0, smallest, of_last_iteration);
+            if (begin({&function}, time(0))) test(0, smallest, of_last_iteration);
         });
     }
 }
@@ -375,19 +375,19 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
     };
     const double size = size_on(body);
     if (mechanics_.has_belt(j)) {
-        look_at(mechanics_.belt_signal(j), std::max(beside_.fastest_belt[j], greatest(s_.y[n_ + body])), 0);
+        test_signal(mechanics_.belt_signal(j), std::max(beside_.fastest_belt[j], greatest(s_.y[n_ + body])), 0);
     }
     const bool open = mechanics_.may_open(j) && mode_.rubs[j] == 0;
     mechanics_.for_each_friction(j, mode_, middle, [&](const Signal& signal, double torque) {
-        // Where a contact is open there may be no torque to compare with; what counts is whether it stays open.
+        // An open contact may have no torque to compare with: what counts is whether it stays open.
         const auto value = [&](const Moment& at) { return signal.value(at); };
         const double own = open ? greatest(s_.at_nodes(value, point_)) : 0;
-        look_at(signal, torque > 0 ? std::max(size / torque, own) : model::never, 0);
+        test_signal(signal, torque > 0 ? std::max(size / torque, own) : model::never, 0);
     });
     const double allowed = of_last_iteration * size + clearly * rough(body) + smallest;
-    if (begin(mechanics_.asked_spring(j), between(0))) look(size, allowed, 0);
+    if (begin(mechanics_.spring_function(j), between(0))) test(size, allowed, 0);
     const Slipping& how = mode_.friction[j];
-    const Mechanics::Asked law = mechanics_.asked_law(j);
+    const Mechanics::UserPiece law = mechanics_.law_function(j);
     if (law.function == nullptr || mode_.leans[j] != 0 || how.riding) return;
     // While the contact sticks, its limit is the law at speed 0.
     const bool alone = joint.friction.function == nullptr, sticks = how.way == model::Motion::stuck;
@@ -395,7 +395,7 @@ void StretchProof::contact(std::size_t j, const Moment& middle) {
     Series speed = sticks ? Series{} : between(n_);
     if (mechanics_.has_belt(j) && !sticks) speed = difference(speed, on_part(cheb::fit(s_.belts[j]), middle_, half_));
     for (double& c : speed) c *= model::sign_of(how.way);
-    if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) look(size, allowed, 0);
+    if (begin(law, alone ? speed : time(0), alone ? nullptr : &speed)) test(size, allowed, 0);
 }
 
 }  // namespace
@@ -462,7 +462,7 @@ double Proofs::rounding_of_belt(const Segment& s, std::size_t joint) {
 
 double Proofs::rounding_of_limit(const Segment& s, const Mode& mode, std::size_t joint) {
     double most = 0;
-    const Mechanics::Asked law = mechanics_.asked_law(joint);
+    const Mechanics::UserPiece law = mechanics_.law_function(joint);
     const bool alone = mechanics_.system().joints[joint].friction.function == nullptr;
     model::Formula* formula = law.function != nullptr && !alone ? law.function->read() : nullptr;
     for (const std::size_t node : looked_at) {
@@ -480,13 +480,13 @@ double Proofs::rounding_of_limit(const Segment& s, const Mode& mode, std::size_t
 std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
     const std::size_t n = mechanics_.bodies();
     std::vector<double> of(n + mechanics_.states());
-    const auto add_asked = [&](std::size_t k, const Mechanics::Asked& asked, double first, const double* speed) {
-        model::Formula* formula = asked.function != nullptr ? asked.function->read() : nullptr;
-        if (formula != nullptr) of[k] += rounding_at(0, s, *formula, asked.piece, first, speed);
+    const auto add_piece = [&](std::size_t k, const Mechanics::UserPiece& own, double first, const double* speed) {
+        model::Formula* formula = own.function != nullptr ? own.function->read() : nullptr;
+        if (formula != nullptr) of[k] += rounding_at(0, s, *formula, own.piece, first, speed);
     };
     const double t = s.start.hi;
     for (std::size_t k = 0; k < mechanics_.states_of_user(); ++k) {
-        add_asked(n + k, mechanics_.asked_rate(k), t, nullptr);
+        add_piece(n + k, mechanics_.rate_function(k), t, nullptr);
     }
     for (std::size_t j = 0; j < mechanics_.joints(); ++j) {
         const model::Joint& joint = mechanics_.system().joints[j];
@@ -500,8 +500,8 @@ std::vector<double> Proofs::roundings(const Segment& s, const Mode& mode) {
             };
             add_read(mechanics_.loads()[j], 1);
             if (slides) mechanics_.for_each_friction(j, mode, s.moment(0, point_), add_read);
-            add_asked(body, mechanics_.asked_spring(j), angle, nullptr);
-            if (slides) add_asked(body, mechanics_.asked_law(j), alone ? slip : t, alone ? nullptr : &slip);
+            add_piece(body, mechanics_.spring_function(j), angle, nullptr);
+            if (slides) add_piece(body, mechanics_.law_function(j), alone ? slip : t, alone ? nullptr : &slip);
         }
     }
     return of;

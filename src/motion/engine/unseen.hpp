@@ -25,7 +25,7 @@ public:
 
     /// Returns whether the formula certainly deviates from its series by at most `allowed` or the fraction `part` of
     /// its value, and the operands of its piece's conditions by little as well.
-    [[nodiscard]] bool is_shown(double allowed, double part);
+    [[nodiscard]] bool certainly_follows(double allowed, double part);
 
     struct Found {
         std::optional<double> place = {};  ///< a point with a larger deviation than allowed
@@ -67,8 +67,8 @@ private:
     model::bounds::Walk walk_ = {};
 };
 
-/// Proves for each stretch that functions known as formulas do nothing between its nodes that their series do not show.
-/// Does not change the motion.
+/// Proves for each stretch that functions known as formulas follow their series between its nodes. Does not change the
+/// motion.
 class Proofs {
 public:
     /// Scales relative to which errors of functions are allowed.
@@ -91,7 +91,7 @@ public:
     double rounding_of_limit(const Segment& segment, const Mode& mode, std::size_t joint);
     /// The time at which a load deviated from its series; loads are sampled until it has passed.
     [[nodiscard]] double seen() const { return seen_; }
-    void see(double t) { seen_ = t; }
+    void note_deviation(double t) { seen_ = t; }
     /// Returns whether the proofs failed for the last stretch.
     [[nodiscard]] bool failed_last() const { return failed_in_a_row_ > 0; }
 

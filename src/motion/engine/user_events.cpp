@@ -15,18 +15,18 @@ UserEvents::Seen UserEvents::watch(const Segment& segment, Ending& ending) {
         Watch& watch = watches_[e];
         const auto when = [&](const Moment& at) { return value(e, at); };
         Nodes values = segment.at_nodes(when, point_);
-        const auto anywhere = segment.anywhere(when, point_);
-        // Beyond a changed condition the formula of the old piece, which may grow without bound, says nothing.
+        const auto function_of_x = segment.function_of_x(when, point_);
+        // Beyond a changed condition the old piece's formula, which may grow without bound, is not valid.
         const double end = ending.by == By::condition ? ending.x : 1;
         const auto place = [end](double x) { return end == 1 ? x : -1 + (x + 1) * ((end + 1) / 2); };
-        const auto exact = [&](double x) { return anywhere(place(x)); };
+        const auto exact = [&](double x) { return function_of_x(place(x)); };
         if (end < 1) std::transform(cheb::nodes.begin(), cheb::nodes.end(), values.begin(), exact);
         if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); }))
             return {.good = false};
         const Watched curve(values, exact, watch.rounded);
         double from = -1;
         Half half = watch.half;
-        // Where the value jumps, rounding of the start may put it back before the jump.
+        // If the value jumps at the start, rounding may put the start before the jump.
         if (const double after = soon(segment); half * values[0] < 0 && half * exact(after) > 0) from = after;
         while (const auto x = curve.leaves(half, from)) {
             if (!(place(*x) < before)) break;
@@ -63,8 +63,8 @@ void UserEvents::advance(double x) {
 
 bool UserEvents::stay_clear(const Ranges& ranges) {
     for (std::size_t e = 0; e < watches_.size(); ++e) {
-        const Mechanics::Asked asked = mechanics_.asked_when(e);
-        const auto range = ranges.of(asked.function->read(), asked.piece, mechanics_.system().named);
+        const Mechanics::UserPiece own = mechanics_.when_function(e);
+        const auto range = ranges.of(own.function->read(), own.piece, mechanics_.system().named);
         if (!range || !(range->lo > 0 || range->hi < 0)) return false;
         const Half half = range->lo > 0 ? 1 : -1;
         if (watches_[e].half != 0 && watches_[e].half != half) return false;
@@ -79,7 +79,7 @@ std::vector<double> UserEvents::values(const Moment& at) const {
     return all;
 }
 
-void UserEvents::pass(const std::vector<std::size_t>& events) {
+void UserEvents::flip_sides(const std::vector<std::size_t>& events) {
     came_from_.clear();
     for (const Watch& watch : watches_) came_from_.push_back(watch.half);
     for (const std::size_t event : events) watches_[event].half = -watches_[event].half;
@@ -152,9 +152,9 @@ std::vector<std::size_t> UserEvents::passing(const Now& now, const Segment& last
     return events;
 }
 
-void UserEvents::stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told,
-                                 const Now& now, const Segment& last, double h, Balances& balances,
-                                 const Frame& frame) {
+void UserEvents::set_sides_after_actions(const std::vector<double>& before, const std::vector<std::size_t>& acted,
+                                         const Now& now, const Segment& last, double h, Balances& balances,
+                                         const Frame& frame) {
     constexpr double at_zero = 1e-12;  // smaller values relative to the stretch count as zero
     std::vector<double> begin, end;
     last.state(-1, begin), last.state(1, end);
@@ -166,7 +166,7 @@ void UserEvents::stand_where_put(const std::vector<double>& before, const std::v
         if (own == before[e]) {
             // An event taken past zero by an impact is not at zero.
             const bool stands = std::fabs(own) <= at_zero * size + 2 * rounding_of(e, now) + watch.rounded;
-            if (!stands || std::find(told.begin(), told.end(), e) == told.end()) continue;
+            if (!stands || std::find(acted.begin(), acted.end(), e) == acted.end()) continue;
             watch.rounded = 2 * std::fabs(own) + rounding_of(e, now);
             watch.sent_back = !passes_on(e, now, last, h, balances, frame);
             watch.half = watch.sent_back ? came_from_[e] : 0;

@@ -19,7 +19,7 @@ public:
         : mechanics_(mechanics), wanted_(wanted), watches_(wanted.size()) {}
 
     const std::vector<Watch>& watches() const { return watches_; }
-    void go_on_with(const std::vector<Watch>& watches) { watches_ = watches; }
+    void set_watches(const std::vector<Watch>& watches) { watches_ = watches; }
 
     struct Seen {
         bool good = true;  ///< whether all values are finite
@@ -29,7 +29,7 @@ public:
     };
     /// Ends the stretch at the first event, if it precedes the present end.
     [[nodiscard]] Seen watch(const Segment& segment, Ending& ending);
-    /// Accepts the watched stretch up to x; one that is repeated is watched again from the same sides.
+    /// Accepts the watched stretch up to x; a repeated stretch is watched again from the same sides.
     void advance(double x);
     /// Returns whether all functions are formulas that certainly keep their sign while the motion is within these
     /// ranges.
@@ -39,16 +39,16 @@ public:
     [[nodiscard]] std::vector<std::size_t> passing(const Now& now, const Segment& last, double h, Balances& balances,
                                                    const Frame& frame);
     std::vector<double> values(const Moment& at) const;
-    /// Prepares for the actions of these events.
-    void pass(const std::vector<std::size_t>& events);
+    /// Moves these events to their new sides before their actions.
+    void flip_sides(const std::vector<std::size_t>& events);
     /// Sets the side of each value after actions, which may move values across zero without an event. If a reported
     /// event is still at zero (something else was changed, as in an impact), its side is the one it came from or, if it
     /// continues, the next one. `before` are the values before the actions, `h` is half the next stretch.
-    void stand_where_put(const std::vector<double>& before, const std::vector<std::size_t>& told, const Now& now,
-                         const Segment& last, double h, Balances& balances, const Frame& frame);
+    void set_sides_after_actions(const std::vector<double>& before, const std::vector<std::size_t>& acted,
+                                 const Now& now, const Segment& last, double h, Balances& balances, const Frame& frame);
     /// Registers an action that moved the bodies. Returns whether the intervals between its firings shrink towards
     /// zero.
-    [[nodiscard]] bool fades(std::size_t event, double t) { return watches_[event].fading.after(t); }
+    [[nodiscard]] bool fades(std::size_t event, double t) { return watches_[event].fading.register_firing(t); }
 
 private:
     double value(std::size_t event, const Moment& at) const { return mechanics_.when(event, at); }

@@ -16,7 +16,7 @@ struct Walls {
     bool any = false;
     /// for each joint: angle of the wall it hit last, and greatest distance from there since
     std::vector<double> origin, reach;
-    /// for each joint: time of its last impact, and the number of successive bounces too low to be seen
+    /// for each joint: time of its last impact, and the number of successive bounces too low to resolve
     std::vector<double> impact;
     std::vector<int> low;
     std::pair<std::size_t, int> last_hit{0, 0};  ///< joint and side of the wall
