@@ -22,7 +22,7 @@ struct OwnState {
     std::shared_ptr<terms::UserFunction> rate;
 };
 
-/// A user's action at one of his events.
+/// A user's action at an event.
 class EventAction : text::NotCopied {
 public:
     virtual ~EventAction() = default;

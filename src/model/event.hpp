@@ -1,5 +1,5 @@
-// What a run tells. Events of a body or a contact: at velocity zero, at a wall, when a relay switches, when a contact
-// opens or closes, or as defined by a user.
+// The events and outcomes of a run. Events of a body or a contact: at velocity zero, at a wall, when a relay switches,
+// when a contact opens or closes, or as defined by a user.
 #pragma once
 
 #include <string>

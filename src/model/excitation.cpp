@@ -18,7 +18,7 @@ double hair(double t, double delay) {
     return std::max(smallest, few_ulps * std::max({std::fabs(t), std::fabs(t - delay), std::fabs(delay)}));
 }
 
-double ask(const Scripted& s, double t, const State& state, Side side) {
+double evaluate(const Scripted& s, double t, const State& state, Side side) {
     const double own_time = t - s.delay;
     switch (side) {
         case Side::before:
@@ -42,7 +42,7 @@ double sum_of(std::span<const Component> components, double t, const State& stat
             continue;
         }
         if (const auto* script = std::get_if<Scripted>(&c.term)) {
-            const double value = ask(*script, t, state, side);
+            const double value = evaluate(*script, t, state, side);
             if (std::isnan(value)) {
                 return value;
             }
@@ -228,7 +228,7 @@ Excitation operator+(const Excitation& a, const Excitation& b) {
 namespace {
 
 /// Returns whether `common` is an integer multiple of all periods.
-bool fit(const std::vector<double>& periods, double common) {
+bool is_multiple_of_all(const std::vector<double>& periods, double common) {
     return std::all_of(periods.begin(), periods.end(), [common](double period) {
         const double n = common / period;
         return std::fabs(n - std::round(n)) <= 1e-9 * n;
@@ -249,7 +249,7 @@ double period_from(const Excitation& excitation, double t) {
     constexpr int most_beats = 60;  // periods of the slowest term; a longer common period is of no use
     const double longest = *std::max_element(periods.begin(), periods.end());
     for (int n = 1; n <= most_beats; ++n) {
-        if (fit(periods, n * longest)) return n * longest;
+        if (is_multiple_of_all(periods, n * longest)) return n * longest;
     }
     return 0;
 }

@@ -52,7 +52,7 @@ struct SineOfSum {
     }
 };
 
-/// The same at times about a middle, with tabulated sines of the distances. The end points, which adjacent panels
+/// Adds a sine at times about a middle, with tabulated sines of the distances. The end points, which adjacent panels
 /// share, are evaluated directly so that both agree.
 std::size_t add_about(const Harmonic& h, const Component& c, std::span<const double> times, std::span<double> out,
                       Spread& spread) {

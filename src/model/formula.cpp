@@ -409,7 +409,7 @@ void Formula::decide(terms::Piece& piece, double t, const State& state, std::spa
     start(t, state, states);
     std::vector<std::uint64_t> of = sources();
     std::vector<std::uint64_t> jumps_with = of;  // sources that also pass through staircases
-    // Where a condition was just crossed, values jump, and later decisions about them are taken anew.
+    // Values jump where a condition was just crossed; later conditions on them are decided again.
     std::vector<char> jumps(of.size(), 0);
     bool other_way = false;
     double* const r = registers_.data();
@@ -684,7 +684,7 @@ private:
     /// Adds a branch that continues at a step. Returns false if there are too many.
     bool open(std::size_t at, const Ranges& r) {
         constexpr std::size_t most_branches = 64;
-        if (count_ > few_branches && read_later_.empty()) find_what_matters();
+        if (count_ > few_branches && read_later_.empty()) find_read_registers();
         for (std::size_t k = 0; k < count_ && count_ > few_branches; ++k) {
             if (open_[k].at == at && unite(open_[k].ranges, r, read_later_[at])) return true;
         }
@@ -727,7 +727,7 @@ private:
         return true;
     }
     /// Finds the registers that are read from each step on.
-    void find_what_matters() {
+    void find_read_registers() {
         const std::vector<Step>& steps = formula_.steps_;
         read_later_.resize(steps.size());
         enum : char { no, yes, decides };
@@ -742,7 +742,7 @@ private:
                 here = at_step[s.yes];
             } else {
                 here = at_step[is_comparison(s.op) ? s.yes : at + 1];
-                // What rounds or is exact may fail, which decides as well.
+                // A step that rounds or needs exact numbers may fail, which is also a decision.
                 char how = is_comparison(s.op) || is_fold(s.op) || s.op >= Op::native ? decides : no;
                 if (is_comparison(s.op)) {
                     for (std::size_t i = 0; i < here.size(); ++i) read(i, at_step[s.no][i]);
@@ -835,7 +835,7 @@ private:
     static constexpr std::size_t never_opened = std::numeric_limits<std::size_t>::max();
     std::vector<Branch> open_{};  ///< the first `count_` continue later, the earliest one at the step `next_`
     std::size_t count_ = 0, next_ = never_opened;
-    std::vector<std::vector<Later>> read_later_{};  ///< for each step, see find_what_matters()
+    std::vector<std::vector<Later>> read_later_{};  ///< for each step, see find_read_registers()
     bool fails_ = false;
 };
 

@@ -119,7 +119,7 @@ public:
     }
 
     /// The formula as a sum of native terms of the time since `from`, to rounding. It is valid while the conditions
-    /// hold that hold at the time `inside`. Empty if the formula is no such sum.
+    /// that hold at the time `inside` still hold. Empty if the formula is not such a sum.
     std::optional<Excitation> terms(double from, double inside) const;
     /// The proven period in t; 0 if none is known or the formula is constant.
     double period() const;

@@ -112,7 +112,7 @@ struct Repeating {
     bool operator==(const Repeating&) const = default;
 };
 
-/// The least common period; empty if it exceeds `most_beats` times the longer one.
+/// The least common period; empty if it exceeds `most_beats` times the longer period.
 std::optional<double> common_period(double a, double b) {
     if (a == 0 || b == 0) return a + b;
     constexpr int most_beats = 60;

@@ -74,7 +74,7 @@ constexpr std::array<double, 4> inner_weights = {0.48761904761904761904761904761
                                                  0.27682604736156594801070040629, 0.047619047619047619047619047619};
 /// The limit of divisions around a kink; the remaining error is negligible.
 constexpr int most_divisions = 64;
-/// Where an interval is divided: off its middle, because the samples of a staircase may be symmetric about that.
+/// An interval is divided here, off its middle, because the samples of a staircase may be symmetric about that.
 constexpr double first_part = 0.45;
 
 double over(terms::UserFunction& torque, double a, double b) {
@@ -88,7 +88,7 @@ double over(terms::UserFunction& torque, double a, double b) {
 }
 
 /// Adaptive quadrature: compares the whole with its two parts and divides again if they differ by more than `allowed`.
-/// This does not shrink with the parts: the rounding of the torque, which does not fade, would divide them all.
+/// The limit does not shrink with the parts: the rounding of the torque, which does not fade, would divide them all.
 double refined_over(terms::UserFunction& torque, double a, double b, double whole, double allowed, int divisions) {
     const double within = a + first_part * (b - a);
     const double left = over(torque, a, within), right = over(torque, within, b);

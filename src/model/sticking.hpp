@@ -50,7 +50,7 @@ inline bool cannot_break_away(const Lowered& system, double most_M, double theta
     return most_M - k_theta <= system.holding(Motion::forward) && most_M + k_theta <= system.holding(Motion::backward);
 }
 
-/// The motion that starts at velocity zero under the torque M: none if |M - k theta| <= Re, otherwise towards M - k
+/// The motion that starts at velocity zero under the torque M: `stuck` if |M - k theta| <= Re, otherwise towards M - k
 /// theta.
 inline Motion motion_from_standstill(const Lowered& system, double M, double theta) {
     const Pull pull = pull_at_rest(system, M, theta);

@@ -28,7 +28,7 @@ struct Walls {
 
     /// An error if the numbers are invalid.
     [[nodiscard]] std::optional<text::Error> complaint() const;
-    /// An error if a motion cannot start at theta, but for rounding: theta is a sum of angles of this size.
+    /// An error if theta is beyond a wall by more than rounding; theta is a sum of angles of this size.
     [[nodiscard]] std::optional<text::Error> crossed_by(double theta, double size = 0) const;
     /// "{ lower = -0.8, upper = 0.8, restitution = 0.7 }"
     std::string lua_text() const;

@@ -20,7 +20,7 @@ struct Coulomb {
     [[nodiscard]] std::optional<text::Error> complaint() const { return wrong_torques("", kinetic, breakaway); }
 };
 
-/// The options of a user.
+/// The torques as given by a user.
 struct CoulombTorques {
     double Rd = 0;
     std::optional<double> Re = {};

@@ -155,7 +155,7 @@ inline constexpr TermText Polyline::about{
     "print(M(0.9), M(1), M(9))  --> 5.0\t7.0\t6.0"};
 
 /// The cubic spline through points is given by its slopes there; its first two derivatives are continuous. These are
-/// the slopes at increasing times. The third derivative is continuous at the second point and the last but one, too
+/// the slopes at increasing times. The third derivative is also continuous at the second point and the last but one
 /// (not-a-knot, C. de Boor); three points give a parabola, two a straight line.
 std::vector<double> spline_slopes(std::span<const double> t, std::span<const double> values);
 

@@ -20,7 +20,7 @@ namespace dinal::model::terms {
 class FunctionMemory : text::NotCopied {
 public:
     virtual ~FunctionMemory() = default;
-    /// A copy with the same content, for a continued run. None if that fails (the owner knows why).
+    /// A copy with the same content, for a continued run; null if that fails (the owner knows why).
     virtual std::shared_ptr<FunctionMemory> copy() const = 0;
 };
 
@@ -83,7 +83,7 @@ public:
     virtual bool may_go_on() { return true; }
     /// Drops a failure that occurred only in a rejected trial step.
     virtual void forget_failure() {}
-    /// A new memory for a run; none if it needs none, or on failure.
+    /// A new memory for a run; null if the function needs none, or on failure.
     virtual std::shared_ptr<FunctionMemory> new_memory() { return nullptr; }
     /// Sets the memory for the following calls.
     virtual void use(const std::shared_ptr<FunctionMemory>& /*memory*/) {}
