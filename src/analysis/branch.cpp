@@ -18,8 +18,8 @@ constexpr double creeping = 1e-4;     // the walk ends after many steps this sho
 constexpr int most_creeps = 40;
 constexpr double least_slope = 1e-7;  // least |dp/ds| beside a fold
 constexpr double upright = 1e-6;      // error of dp/ds; below it the branch is vertical
-constexpr double dying = 1e-2;        // the smallest unit, as a part of the greatest motion
-constexpr double vanishes = 1e-3;     // a smaller cycle is a rest
+constexpr double dying = 1e-2;        // smallest unit, relative to the greatest motion
+constexpr double vanishes = 1e-3;     // a cycle smaller than this counts as a rest
 constexpr double boundless = 1e8;     // a motion grown by this factor is at a resonance without a periodic motion
 
 /// A test function that is zero where a multiplier is -1; the next one is zero where a pair is on the unit circle.
@@ -127,7 +127,8 @@ public:
         return followed(*first, tangent(*first, way * across()));
     }
 
-    /// Switches to the branch that begins there, such as that of a doubling with a circuit of twice the periods.
+    /// Switches to the branch that begins at this parameter, such as that of a doubling with a circuit of twice the
+    /// periods.
     BranchPath walk_aside(double parameter) {
         const auto first = begun(parameter);
         if (!first) return path_;
@@ -257,7 +258,7 @@ private:
             find_motion(*spot);
             if (!circuit_.is_half() && becomes_symmetric(walk.now.motion, spot->motion)) return path_;
             if (!add_step(walk, *spot, specials_of_step(walk, *spot, on, moved))) return ended(WalkEnd::range);
-            if (goes_back()) return path_;
+            if (handle_met_point()) return path_;
             if (is_closed(walk, *spot, on, step.length)) return ended(WalkEnd::closed);
             if (has_vanished(*spot)) return ended(WalkEnd::vanished);
             walk.passed = Passed{walk.now.x, slope_by_p(walk.ahead), walk.now.p};
@@ -600,7 +601,7 @@ private:
         return spot.slopes.size() > 0 ? std::optional(std::move(spot)) : std::nullopt;
     }
 
-    /// A point between two others of which one has two more growing pairs: there, one pair grows. None if it is not
+    /// A point at which one more pair grows, between two others that differ by two growing pairs; none if it is not
     /// found.
     std::optional<Spot> between_pairs(const Spot& a, const Spot& b) {
         if (a.x.size() < 4) return {};
@@ -687,9 +688,9 @@ private:
         return (way > 0 ? values_.back() - b.p : b.p - values_.front()) > slack_;
     }
 
-    /// Handles a walk that met one of its own points. Behind a fold it went back the same way: the points since the
-    /// fold are removed.
-    bool goes_back() {
+    /// Handles a walk that met one of its own points. If it has passed a fold, it went back the same way: the points
+    /// since the fold are removed. Returns false if it met none.
+    bool handle_met_point() {
         if (!met_again_) return false;
         std::vector<BranchPoint>& points = path_.points;
         const auto is_fold = [](const BranchPoint& point) { return point.kind == BranchKind::fold; };

@@ -58,9 +58,9 @@ public:
     const Eigen::VectorXd& first() const { return first_; }
     /// Returns whether the map covers half a period of a symmetric motion.
     bool is_half() const { return half_; }
-    /// Returns whether it is a rest of an autonomous system, with multipliers over a fixed time.
+    /// Returns whether the motion is a rest of an autonomous system, with multipliers over a fixed time.
     bool stands() const { return stands_; }
-    /// Returns whether it is a limit cycle, which may shrink to a rest.
+    /// Returns whether the motion is a limit cycle, which may shrink to a rest.
     bool cycles() const { return cycles_; }
     const std::optional<model::Contradiction>& contradiction() const { return contradiction_; }
     /// Returns whether no map can be computed any more, because of Ctrl-C or a failure of M.
@@ -81,12 +81,13 @@ private:
     std::optional<model::Contradiction> contradiction_;
 };
 
-/// A circuit of theta and velocity over `periods` of M, or over half a period if the motion is symmetric, which it may
-/// be only in a family that is alike both ways everywhere. So is the next one.
+/// A circuit of theta and velocity over `periods` of M, or over half a period if the motion and the whole family are
+/// symmetric.
 std::unique_ptr<Circuit> circuit_of_periods(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
-/// A circuit of theta, velocity and states: from period to period, from passage to passage of a cycle, or of a steadily
-/// sliding rest (return_circuit.cpp). Null if the motion does not contain its full state.
+/// A circuit of theta, velocity and states, also over half a period if symmetric: from period to period, from passage
+/// to passage of a cycle, or of a steadily sliding rest (return_circuit.cpp). Null if the motion does not contain its
+/// full state.
 std::unique_ptr<Circuit> circuit_of_returns(const Family& family, double p, const SteadyMotion& motion, int periods,
                                             const motion::Monitor& monitor);
 
@@ -122,7 +123,7 @@ struct BranchPath {
 /// Walks from the circuit's first place at this parameter towards greater (way = 1) or smaller (-1) values. `values`
 /// increase, two at least.
 BranchPath walk(Circuit& circuit, std::span<const double> values, double parameter, double way);
-/// Switches to the branch that begins there, as at a doubling with a circuit of twice the periods.
+/// Switches to the branch that begins at this parameter, as at a doubling with a circuit of twice the periods.
 BranchPath walk_aside(Circuit& circuit, std::span<const double> values, double parameter);
 /// Walks from a limit cycle towards larger ones.
 BranchPath walk_up(Circuit& circuit, std::span<const double> values, double parameter);

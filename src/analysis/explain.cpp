@@ -21,7 +21,7 @@ namespace dinal::analysis {
 namespace {
 
 constexpr std::size_t most_stops = 5;                   // the most stops that are all reported one by one
-constexpr std::size_t first_stops = 2, last_stops = 2;  // those reported if there are more
+constexpr std::size_t first_stops = 2, last_stops = 2;  // numbers of first and last stops reported otherwise
 constexpr std::size_t most_turns = 4, most_slides = 3;
 
 constexpr const char* base_text =
@@ -68,7 +68,7 @@ public:
           on_belt_(!belt_.components().empty() && !is_smooth()),
           steady_belt_(belt_.constant_from() <= run_.t_start),
           T0_(time_scale(whole, seen, undisturbed_)),
-          constant_from_(excitation_.has_feedback() || on_base_ || on_belt_ || !has_reasons()
+          constant_from_(excitation_.has_feedback() || on_base_ || on_belt_ || !knows_all_torques()
                              ? model::never
                              : excitation_.constant_from()) {
         for (const Stretch& s : stretches_) {
@@ -110,7 +110,7 @@ private:
     /// Returns whether nothing rubs on the joint.
     bool is_smooth() const { return joint_.friction.none() && joint_.friction.sliders.empty(); }
     /// Returns whether all torques on a standing mass and its friction limit are known.
-    bool has_reasons() const { return undisturbed_ && joint_.is_plain(); }
+    bool knows_all_torques() const { return undisturbed_ && joint_.is_plain(); }
     std::string at(double t) const { return text::time_text(t, T0_); }
     /// The angle at the end of a stretch.
     [[nodiscard]] static std::string place(const Stretch& s) {
@@ -139,7 +139,7 @@ private:
         return torque;
     }
 
-    /// Re against a pull in this direction.
+    /// The value of Re that acts against a pull in this direction.
     double limit(double pull) const {
         return system_.friction().holding(pull < 0 ? model::Motion::backward : model::Motion::forward);
     }
@@ -233,7 +233,7 @@ private:
     }
 
     std::string slip_from_wall(const model::Event& event) const {
-        if (!has_reasons()) return "it left the wall";
+        if (!knows_all_torques()) return "it left the wall";
         const char* way = event.theta == system_.walls()->upper ? "backward" : "forward";
         if (system_.friction().none()) return fmt::format("{} pulled it off the wall {}", pull_name(), way);
         return fmt::format("{} pulled it off the wall {} with more than Re = {:.5g}", pull_name(), way,
@@ -350,7 +350,7 @@ private:
         const Stretch& first = stretches_.front();
         say("{} started at t = {} from theta = {:.5g} with velocity {:.5g}", name_or("The mass"), at(run_.t_start),
             y.theta, y.velocity);
-        const bool known = has_reasons() && run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
+        const bool known = knows_all_torques() && run_.size() > 0 && run_.column(motion::Column::t)[0] == run_.t_start;
         const bool stands = first.stuck || motion::belt_from(belt_, run_.t_start) == 0;
         const bool has_torque =
             y.velocity == 0 && stands && !system_.friction().none() && !own_rule_ && known && first.lasts() > 0;
@@ -362,7 +362,7 @@ private:
         } else if (has_torque) {
             const double torque = pull_at(y.theta, run_.column(motion::Column::M)[0], run_.t_start);
             const double Re = limit(torque);
-            if (!first.stuck && std::fabs(torque) <= Re) {  // at its limit it moves off where the torque increases
+            if (!first.stuck && std::fabs(torque) <= Re) {  // at its limit it moves off as the torque increases
                 add(" and moved off because |{}| exceeded Re = {:.5g}", pull_name(), Re);
             } else {
                 add("{} because {}", first.stuck ? "" : " and moved off", reason(torque));
@@ -518,12 +518,13 @@ private:
         end_paragraph();
     }
 
-    /// Compares a free motion with its closed form, as far as it has turned.
+    /// Compares the turns of a free motion with its closed form.
     void describe_decay() {
         const bool swung = stretches_.size() > 1 && stretches_[1].begun_by->kind == model::EventKind::turn;
         const bool closed_form = system_.friction().none() || system_.friction().as<model::laws::Coulomb>() != nullptr;
-        if (!free() || !has_reasons() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring()) return;
-        decay_told_ = true;
+        if (!free() || !knows_all_torques() || own_rule_ || !swung || !closed_form || !system_.has_linear_spring())
+            return;
+        decay_described_ = true;
         const double zeta = system_.damping_ratio(), step = 2 * system_.kinetic_friction() / system_.stiffness();
         const double factor = zeta < 1 ? std::exp(-std::numbers::pi * zeta / std::sqrt(1 - zeta * zeta)) : 0;
         if (zeta >= 1) {
@@ -572,7 +573,7 @@ private:
             const bool sprung = !system_.spring().none(), fed_back = excitation_.has_feedback();
             const bool driven_back =
                 (fed_back || sprung) && std::fabs(torque) > limit(torque) && !at_limit(torque, begun);
-            if (has_reasons()) {
+            if (knows_all_torques()) {
                 add(" because {}", !driven_back ? reason(torque)
                                    : !sprung    ? "M drives it back from both sides of velocity 0"
                                    : !fed_back  ? "the spring jumps there and drives it back from both sides"
@@ -597,7 +598,7 @@ private:
     std::string slip(const model::Event& event, bool has_torque) const {
         if (event.kind == model::EventKind::opened) return "its contact opened";
         if (at_wall(event.theta)) return slip_from_wall(event);
-        if (!has_reasons()) return "it slipped";
+        if (!knows_all_torques()) return "it slipped";
         if (on_belt_) {
             const double vb = motion::belt_from(belt_, event.t), slides = event.velocity - vb;
             constexpr double clearly = 1e-6;
@@ -623,7 +624,7 @@ private:
         if (half_cycles_ > 0 && !over) {
             if (const auto motion = recurrence(events_)) {
                 describe_recurrence(*motion);
-            } else if (!decay_told_ && undisturbed_) {
+            } else if (!decay_described_ && undisturbed_) {
                 describe_trend();
             }
         }
@@ -638,7 +639,7 @@ private:
     void describe_stillness() {
         still_ = run_.outcome == model::Outcome::at_rest;
         if (!still_) return;
-        if (on_base_ || on_belt_ || !has_reasons()) {
+        if (on_base_ || on_belt_ || !knows_all_torques()) {
             say("It stays at rest.");
             return;
         }
@@ -749,15 +750,15 @@ private:
     const model::Excitation& excitation_;
     const model::Excitation& belt_;
     std::optional<motion::OwnRule> own_rule_;  // a release rule other than the law's
-    std::vector<Stretch> stretches_, swings_;  // alike except on a belt: relative to the belt, and of theta
+    std::vector<Stretch> stretches_, swings_;  // relative to the belt, and of theta; equal without a belt
     std::vector<model::Event> events_;         // including the extremes of theta on a belt
     std::vector<const Stretch*> stops_;
     bool on_base_, on_belt_, steady_belt_;
     double T0_, constant_from_;
     double stuck_ = 0;
     std::size_t half_cycles_ = 0;
-    bool decay_told_ = false;  // whether the closed form has described it
-    bool still_ = false;       // whether it rests for good under a periodic M
+    bool decay_described_ = false;  // whether describe_decay() has described it
+    bool still_ = false;            // whether it rests for good under a periodic M
 };
 
 /// Builds the text on the whole system around those on its bodies and links.

@@ -70,8 +70,8 @@ std::optional<LeastSquares> fit_from(const GeneralQuestion& question, Eigen::Vec
     return fit(question, start, question.measured.size(), many);
 }
 
-/// Widens the errors by the memory and unevenness of the noise, by what the model may lack, and those of fitted zeros
-/// at the first time by a steady drift.
+/// Widens the errors for noise that is correlated or uneven and for terms that the model may lack, and those of fitted
+/// zeros also for a steady drift.
 void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, const Eigen::MatrixXd& J,
            Covariance& covariance, GeneralFit& found) {
     const NoiseMemory memory(residual, question.columns, J);

@@ -125,9 +125,9 @@ public:
         }
         if (question_.M && !stopped_) try_jumps();
         if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
-        if (question_.M) tell_stops_from_cuts();
-        if (seeks_Re_ && !stopped_) try_none(Unknown::Re, 0.1);
-        if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_none(Unknown::velocity0, 1e-4);
+        if (question_.M) distinguish_stops_from_cuts();
+        if (seeks_Re_ && !stopped_) try_zero(Unknown::Re, 0.1);
+        if (question_.M && is_sought(question_, Unknown::velocity0) && !stopped_) try_zero(Unknown::velocity0, 1e-4);
         return result();
     }
 
@@ -155,7 +155,7 @@ private:
 
     /// Returns whether the record resolves the motion: each swing has samples, and the initial velocity is not too
     /// high. A search may leave this region, where runs take too long and fits are meaningless.
-    bool is_seen(const Parameters& p) const {
+    bool is_resolved(const Parameters& p) const {
         const double highest = record_.highest_omega0();
         constexpr double most = 10;  // greatest way between two samples, in ranges of the record
         const bool seeks_omega0 = is_sought(question_, Unknown::I) || is_sought(question_, Unknown::k);
@@ -175,7 +175,7 @@ private:
 
     [[nodiscard]] std::optional<Eigen::VectorXd> moved(const Parameters& p, std::size_t rows) {
         const auto system = system_of(p);
-        if (!system || !is_seen(p)) return {};
+        if (!system || !is_resolved(p)) return {};
         const model::State initial{p.theta0, p.velocity0};
         if (!question_.M) {
             stopped_ = stopped_ || (monitor_ && !monitor_(question_.t.front()));
@@ -635,7 +635,7 @@ private:
     /// it is not larger, and one that is stuck at first does not determine its velocity. If the prediction does not
     /// depend on the parameter near 0, and 0 fits within the noise, 0 is used, so that no stops are inferred from
     /// noise. The errors remain those of the fit with this parameter free.
-    void try_none(Unknown which, double little) {
+    void try_zero(Unknown which, double little) {
         const LeastSquares best = *best_;
         base_ = best_->base;
         const Eigen::Index place = place_of(which);
@@ -659,13 +659,13 @@ private:
         if (!freest_) freest_ = best;
         best_->take(*without);
         best_->parameters[place] = 0;  // exactly 0; the fit has held it there except for rounding
-        at(tells_nothing_, which) = is_flat;
-        if (is_flat && which == Unknown::velocity0 && !question_.given.theta0) see_short_beginnings();
+        at(has_no_effect_, which) = is_flat;
+        if (is_flat && which == Unknown::velocity0 && !question_.given.theta0) explore_short_beginnings();
     }
 
     /// Varies the initial velocity of a mass that stops before there are many samples; the fitted initial angles show
     /// the error of the angle.
-    void see_short_beginnings() {
+    void explore_short_beginnings() {
         const Parameters best = filled_best();
         const FitScale scale = scale_of(best);
         const double whole = scale.whole[place_of(Unknown::velocity0)];
@@ -694,7 +694,7 @@ private:
 
     /// Decides whether a record is clipped at its extreme values or the mass rested there: in the latter case the fit
     /// does not exceed them.
-    void tell_stops_from_cuts() {
+    void distinguish_stops_from_cuts() {
         if (record_.cut.at_low + record_.cut.at_high == 0) return;
         const auto whole = moved(filled_best(), question_.t.size());
         if (!whole) return;
@@ -876,7 +876,7 @@ private:
         }
         for (Eigen::Index i = 0; i < count(); ++i) {
             const auto place = static_cast<std::size_t>(i);
-            at(found.silent, unknowns_[place]) = covariance.silent[place] || at(tells_nothing_, unknowns_[place]);
+            at(found.silent, unknowns_[place]) = covariance.silent[place] || at(has_no_effect_, unknowns_[place]);
         }
         for (const Eigen::MatrixXd& one : cautious) {
             set_errors(full_of(one), spread, found);
@@ -908,8 +908,8 @@ private:
         return found;
     }
 
-    /// Widens the errors by the memory and unevenness of the noise, by what the model may lack, and that of the offset
-    /// at the first time by a steady drift. Returns cautious().
+    /// Widens the errors for noise that is correlated or uneven and for terms that the model may lack, and that of the
+    /// offset also for a steady drift. Returns cautious().
     [[nodiscard]] std::vector<Eigen::MatrixXd> widen(const Eigen::MatrixXd& J, const NoiseMemory& memory,
                                                      Covariance& covariance, Identified& found) {
         const Eigen::VectorXd &left = best_->residual, whole = scale_of(best_filled_).whole;
@@ -1011,7 +1011,7 @@ private:
                &high = at(found.high, which) = at(found.value, which);
         if (which == Unknown::Re && !question_.M) {
             std::tie(low, high) = breakaways();
-        } else if (at(tells_nothing_, which)) {
+        } else if (at(has_no_effect_, which)) {
             constexpr double equally_good = 4;  // two standard errors
             for (const auto& [sum, p] : seen_) {
                 if (sum > best_->sum + equally_good * spread * spread) continue;
@@ -1143,13 +1143,13 @@ private:
     std::vector<Rest> rests_ = {};         // best fit for each turn of rest
     std::optional<Best> best_;
     std::optional<LeastSquares> freest_;  // best fit before undetermined parameters were set to 0
-    OfEach<bool> tells_nothing_;
+    OfEach<bool> has_no_effect_;
     // for a driven motion: sampled sums of squares and their parameters
     std::vector<std::pair<double, Parameters>> seen_;
     Parameters best_filled_{};
     std::optional<Eigen::VectorXd> moving_;  // fit of the moving part of a free decay
     std::size_t left_out_ = 0;  // number of last turns left out, which noise or the end of the motion may have caused
-    int agreed_ = 0;  // number of other fits that came to the best one, which suggests that no better one exists
+    int agreed_ = 0;  // number of other fits that ended at the best one, which suggests that no better one exists
     bool stopped_ = false;
 };
 

@@ -58,8 +58,8 @@ struct IdentifiedRatio {
 
 struct Identified {
     OfEach<double> value, error;  ///< error: one standard deviation; 0 for given parameters
-    OfEach<double> cautious;      ///< the same; 0: none
-    OfEach<bool> silent;          ///< silent: not determined by the record
+    OfEach<double> cautious;  ///< error if friction may fall with the speed or the spring be nonlinear; 0: not computed
+    OfEach<bool> silent;      ///< silent: not determined by the record
     /// for silent parameters: values from low to high fit about equally well
     OfEach<double> low, high;
     IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};  ///< determined by a free decay
@@ -76,7 +76,7 @@ struct Identified {
     bool is_unexplained = false;
     /// what the residual follows if the model is wrong: the best explanation, then those that are about as good
     std::vector<Follows> misfit = {};
-    /// standard deviation without that pattern, or that of the record itself if less
+    /// standard deviation of the residual without that pattern, or that of the record itself if less
     double noise_without_misfit = 0;
     bool has_errors = true;                ///< false if the model is so wrong that errors are meaningless
     std::optional<std::size_t> wild = {};  ///< index of a sample that makes up more than half of the sum of squares

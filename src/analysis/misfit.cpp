@@ -51,12 +51,12 @@ public:
         velocity_ = slope + back_ * y + left_ * u;
     }
     void stop() { velocity_.setZero(); }
-    /// A turn: `way` is the direction before it, after which friction reverses.
+    /// Passes a turn: `way` is the direction before it, after which friction reverses.
     void turn(double pull, double way) {
         const double before = pull - Rd_ * way, after = pull + Rd_ * way;
         if (before != 0) velocity_ *= after / before;
     }
-    /// A start in direction `way` when the pull reaches Re: a helping torque makes it start earlier.
+    /// Starts in direction `way` when the pull reaches Re: a helping torque makes the mass start earlier.
     void start(double t, double pull, double way, const Row& torques) {
         const double h = 1e-5 / omega0_, rise = (M_.value(t + h) - M_.value(t - h)) / (2 * h);
         if (rise * way > 0) velocity_ = (pull - Rd_ * way) / (I_ * rise) * (torques - k_ * angle_);

@@ -73,11 +73,11 @@ struct Structure {
 Structure drift(std::span<const double> times, std::span<const int> columns, int column, bool is_white);
 
 struct Misfit {
-    std::vector<Follows> follows;  ///< what explains the residual best, then all that explains it about as well
+    std::vector<Follows> follows;  ///< the best explanation of the residual, then those that are about as good
     bool is_sure = false;          ///< whether chance would produce it in less than one of a hundred records
-    double share = 0;              ///< fraction of the residual's sum of squares that the terms of the first explain
-    double noise = 0;              ///< standard deviation of the residual without them
-    Eigen::VectorXd shift = {};    ///< change of the parameters when they are added to the model
+    double share = 0;            ///< fraction of the residual's sum of squares that the terms of the first one explain
+    double noise = 0;            ///< standard deviation of the residual without these terms
+    Eigen::VectorXd shift = {};  ///< change of the parameters when they are added to the model
 
     /// The parameters are not corrected, so their error includes the whole shift, multiplied by the root of 2 as a
     /// margin.
@@ -99,7 +99,7 @@ std::optional<Misfit> misfit_of(const Eigen::VectorXd& residual, const NoiseKind
 
 /// The effect on the parameters of a term that the fit leaves out, whose coefficient has the prior error `size`.
 struct Nuisance {
-    Eigen::VectorXd shift;       ///< change of the parameters if the term is fitted, too
+    Eigen::VectorXd shift;       ///< change of the parameters if the term is also fitted
     Eigen::MatrixXd covariance;  ///< covariance of such a fit, in units of noise squared
 };
 Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorXd& residual, const NoiseMemory& memory,

@@ -163,7 +163,7 @@ Eigen::VectorXd widened_by_memory(const NoiseMemory& memory, const Eigen::Matrix
 Eigen::VectorXd widened_by_uneven_noise(const NoiseMemory& memory, const Eigen::VectorXd& residual,
                                         const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole, double noise) {
     const Eigen::MatrixXd white = memory.whitened(slopes), by = white * covariance_of(slopes, whole, noise).matrix;
-    const Eigen::VectorXd taken = white.cwiseProduct(by).rowwise().sum();  // by the fit from each number
+    const Eigen::VectorXd taken = white.cwiseProduct(by).rowwise().sum();  // part of each number that the fit absorbs
     constexpr double most_taken = 0.5;
     const Eigen::VectorXd squares =
         memory.whitened(residual).col(0).cwiseAbs2().cwiseQuotient((1 - taken.array().min(most_taken)).matrix());

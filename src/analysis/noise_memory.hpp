@@ -14,7 +14,7 @@ namespace dinal::analysis {
 
 class NoiseMemory {
 public:
-    /// The most previous numbers that a number may depend on.
+    /// The greatest number of previous numbers on which a number may depend.
     static constexpr Eigen::Index most_lags = 8;
 
     /// `columns` has the measured column of each number, `slopes` the derivatives of the fit that left this residual.

@@ -56,10 +56,10 @@ public:
 
     /// A map over `periods` of M. The question must outlive it.
     PeriodMap(const SteadyQuestion& question, double periods, const motion::Monitor& monitor);
-    /// The opposite of the state half a period later, for a symmetric problem.
+    /// A map to the opposite of the state half a period later, for a symmetric problem.
     static PeriodMap half(const SteadyQuestion& question, const motion::Monitor& monitor);
 
-    /// One return with all its facts.
+    /// Makes one return and determines all its properties.
     MapStep step(const Place& from) const;
 
     // As a Map; places are divided by the size of the motion.
@@ -102,8 +102,8 @@ private:
     mutable std::optional<std::pair<Place, MapStep>> last_;
 };
 
-/// Finds the motion that a run from the start of the question leads to, by the period map. `near` says that the start
-/// is near the answer, and a stable motion there is wanted. Requires PeriodMap::applies_to().
+/// Finds the motion that a run from the start of the question leads to, by the period map. `near`: the start is near
+/// the answer, and a stable motion there is wanted. Requires PeriodMap::applies_to().
 SteadyMotion motion_by_periods(const SteadyQuestion& question, bool near, const motion::Monitor& monitor);
 
 }  // namespace dinal::analysis

@@ -18,7 +18,7 @@ public:
         : question_(question),
           system_(question.body),
           monitor_(monitor),
-          symmetric_(is_alike_both_ways(question)),
+          symmetric_(is_symmetric_problem(question)),
           start_(inside(question.body, (symmetric_ ? half() : whole()).place(question.drive.start()))) {}
 
     SteadyMotion found(bool near) {

@@ -34,7 +34,7 @@ double time_open(const motion::Run& run);
 /// The half cycles of theta, and its rests; on a belt from one extreme of theta to the next.
 std::vector<Stretch> half_cycles(const motion::Run& run);
 
-/// The last period of a motion that repeats itself, or soon will.
+/// The last period of a motion that repeats, or soon will.
 struct Recurrence {
     bool steady = false;  ///< whether it repeats; otherwise it still settles
     double period = 0;
@@ -59,12 +59,12 @@ struct Swings {
     double span = 0;                     ///< length of a span, time units
 };
 
-/// `period` of M, or 0.
+/// `period` is that of M, or 0.
 Swings swings(const std::vector<Stretch>& stretches, double period);
 
-/// The lag of theta's fundamental behind that of M over the period of M before `until`, rad, from -pi/2 to 3 pi/2. None
-/// if M has no fundamental or depends on the motion, or if there are too few rows. User functions are not called again:
-/// their M is read from the rows.
+/// The lag of theta's fundamental behind that of M over the period of M before `until`, rad, from -pi/2 to 3 pi/2.
+/// Empty if M has no fundamental or depends on the motion, or if there are too few rows. User functions are not called
+/// again: their M is read from the rows.
 std::optional<double> phase_lag(const motion::Run& run, const model::Excitation& excitation, double period,
                                 double until);
 

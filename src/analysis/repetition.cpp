@@ -17,14 +17,14 @@ namespace {
 
 constexpr double golden = 0.6180339887498949;  // its multiples modulo 1 fill a period evenly
 
-/// The i-th of times spread over the period.
+/// Time number i of a sequence that fills the period evenly.
 double probe(const Repetition& repeats, int i) {
     const double place = (i + 0.5) * golden;
     return repeats.start + repeats.period * (place - std::floor(place));
 }
 
-/// Times across the period, and some in each piece of half a period without a break of M in either half, so that a
-/// difference on a short piece is detected. None if there are too many pieces.
+/// Returns times across the period, and some in each piece of half a period without a break of M in either half, so
+/// that a difference on a short piece is detected; empty if there are too many pieces.
 std::optional<std::vector<double>> probes_of_halves(const model::Excitation& excitation, const Repetition& repeats) {
     constexpr int spread = 24;
     constexpr std::size_t most_breaks = 20000;
@@ -50,7 +50,7 @@ std::optional<std::vector<double>> probes_of_halves(const model::Excitation& exc
     return times;
 }
 
-/// The extreme of sign * M, bracketed by three times with the greatest value in the middle.
+/// Returns the extreme of sign * M, bracketed by a and b.
 double refined(const model::Excitation& excitation, double sign, double a, double b) {
     for (int i = 0; i < 60 && b - a > 1e-9 * (std::fabs(a) + b - a); ++i) {
         const double x = b - golden * (b - a), y = a + golden * (b - a);
@@ -285,7 +285,8 @@ bool is_antisymmetric(const model::Excitation& excitation, const Repetition& rep
         greatest = std::max(greatest, size);
         worst = std::max(worst, std::fabs(now + half) - 1e-12 * size);
     }
-    // Terms that cancel leave the rounding of the greatest; for a function only its values are known.
+    // Terms that cancel leave the rounding of the greatest term. The greatest term of a function is unknown, so its
+    // values count.
     const double most = excitation.most();
     return worst <= 1e-13 * (std::isfinite(most) ? most : greatest);
 }

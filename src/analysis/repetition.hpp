@@ -11,12 +11,12 @@
 
 namespace dinal::analysis {
 
-/// M repeats with `period` from `start` on; period 0: nothing depends on time.
+/// M repeats with `period` from `start` on; period 0 means that nothing depends on time.
 struct Repetition {
     double start = 0, period = 0;
 };
 
-/// The repetition as declared by the terms; none if unknown. The period of a constant M is `otherwise`.
+/// The repetition declared by the terms; empty if unknown. The period of a constant M is `otherwise`.
 std::optional<Repetition> repetition_of(const model::Excitation& excitation, double otherwise);
 
 /// Returns whether M changes sign half a period later (at the opposite state, if it depends on the state).

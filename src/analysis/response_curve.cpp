@@ -77,7 +77,7 @@ private:
         return motion;
     }
 
-    /// The circuit of a motion that may not be the only one; null if it has none.
+    /// The circuit of a motion that may not be unique; null if there is no circuit.
     std::unique_ptr<Circuit> circuit_of(double p, const SteadyMotion& motion, int periods) {
         const bool slides = motion.status == SteadyStatus::rest && motion.by_returns.question && motion.stuck == 0;
         if (!walkable_ || (motion.status != SteadyStatus::steady && !slides)) return {};
@@ -86,19 +86,19 @@ private:
         if (!question.is_plain() && (question.settles >= 0 || contracts(question))) return {};
         if (contracts(question) && question.drive.states.empty() && question.drive.events.empty()) return {};
         SteadyMotion begun = motion;
-        begun.symmetric = motion.symmetric && periods == 1 && stays_alike();
+        begun.symmetric = motion.symmetric && periods == 1 && family_is_symmetric();
         if (PeriodMap::applies_to(question)) return circuit_of_periods(question_.family, p, begun, periods, monitor_);
         return circuit_of_returns(question_.family, p, begun, periods, monitor_);
     }
 
-    /// Returns whether the problem is alike both ways at all values: otherwise a map over half a period, by which a
-    /// branch begins at a symmetric motion, would be wrong at other points of it.
-    bool stays_alike() {
-        if (!stays_alike_) {
-            stays_alike_ =
-                std::ranges::all_of(sorted_, [&](double value) { return is_alike_both_ways(question_.family(value)); });
+    /// Returns whether the problem is symmetric at all parameter values. Otherwise a map over half a period, valid for
+    /// a symmetric motion at the start of a branch, would be wrong at other points of it.
+    bool family_is_symmetric() {
+        if (!family_is_symmetric_) {
+            family_is_symmetric_ = std::ranges::all_of(
+                sorted_, [&](double value) { return is_symmetric_problem(question_.family(value)); });
         }
-        return *stays_alike_;
+        return *family_is_symmetric_;
     }
 
     void note_outcome(const Circuit& circuit) {
@@ -166,7 +166,7 @@ private:
     void add_born(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
         note_outcome(circuit);
         if (path.points.size() < 2) return;
-        // The smallest cycles are about the Hopf point itself.
+        // The smallest cycles practically coincide with the Hopf point.
         BranchPoint& first = path.points.front();
         constexpr double small = 1e-2;
         if (first.kind == BranchKind::fold && point.kind == BranchKind::hopf) {
@@ -315,7 +315,7 @@ private:
     double way_, range_ = 0;
     std::size_t seen_ = 0;  // number of branches whose births were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
-    std::optional<bool> stays_alike_;  // empty until it is computed
+    std::optional<bool> family_is_symmetric_;  // empty until it is computed
     ResponseCurve curve_;
 };
 

@@ -230,7 +230,7 @@ private:
                                                        : 1;
         const auto passed = cycles_ ? std::optional(section) : std::nullopt;
         Returns map(here.runs, *chart_, start(here), length, passed, VectorXd::Ones(there_.size()), there_);
-        if (half_) map.take_opposites();
+        if (half_) map.end_at_opposites();
         return map;
     }
 

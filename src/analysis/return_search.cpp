@@ -76,11 +76,11 @@ private:
     }
 
     /// Completes the answer for a motion of facts_.period that begins at this moment. Returns its state half a period
-    /// later; empty if it cannot be run, and the search continues.
+    /// later; empty if it cannot be run: the search then continues.
     std::optional<VectorXd> complete(FullState moment, double start);
     /// The run of a period that does not move at all, from a place beside this moment; empty if there is none.
     std::optional<motion::Run> standing_beside(const motion::Run& run, FullState& moment, double start);
-    /// The same for a run that has settled up to its end and repeats after facts_.period.
+    /// Like complete(), for a run that has settled up to its end and repeats after facts_.period.
     std::optional<VectorXd> complete_settled(const motion::Run& so_far);
     std::optional<VectorXd> complete_period(const FullState& from, motion::Run run, double period);
     /// Completes the answer for bodies that rest or rotate steadily; `stands` tells whether friction holds all of them.
@@ -89,7 +89,7 @@ private:
     [[nodiscard]] bool is_moving(const FullState& now) const {
         return now.y.segment(n(), n()).cwiseAbs().maxCoeff() > std::max(1e-9 * largest_, rounding_of(now));
     }
-    /// Returns by how much a body may move that a load holds at a jump.
+    /// Returns how far a body may move by rounding while a load holds it at a jump.
     [[nodiscard]] double rounding_of(const FullState& now) const {
         return 64 * motion::engine::rounding * std::max(largest_, now.y.head(n()).cwiseAbs().maxCoeff());
     }
@@ -168,7 +168,7 @@ VectorXd ReturnSearch::units_of(const Reach& reach) const {
 
 std::optional<Map::Return> ReturnSearch::begin() {
     const double period = question().repeats.period;
-    // An action at the very beginning of a run would be lost, so returns begin at a quiet phase.
+    // An action at the very beginning of a run would be lost, so returns begin at a time without actions.
     constexpr double irrational_part = 0.3819660112501051;
     start_ = question().repeats.start;
     Reach reach;
@@ -229,7 +229,7 @@ public:
         for (std::size_t until = least_returns; sizes_.size() < most; until += std::max(least_returns, until / 4)) {
             until = std::min(until, most);
             for (; sizes_.size() < until; ++s_.facts_.maps) {
-                if (!goes_on()) return;
+                if (!makes_return()) return;
             }
             const bool alone = timeless_ && s_.question().drive.states.empty();
             if (alone && small_ >= least_returns && run_.motion_at_stop != model::Motion::stuck) {
@@ -237,8 +237,8 @@ public:
                 return;
             }
             constexpr double settled = 1e-10;  // relative distance from the limit
-            std::size_t m = comes_back(settled);
-            if (m == 0 && sizes_.size() >= most) m = comes_back(alike);
+            std::size_t m = returns_until_repeat(settled);
+            if (m == 0 && sizes_.size() >= most) m = returns_until_repeat(alike);
             if (m == 0) continue;
             finish(m);
             return;
@@ -252,11 +252,11 @@ private:
     static constexpr double finest = 1e-12;  // relative rounding of runs
 
     /// Makes one more return; returns false at the end of the search.
-    bool goes_on() {
+    bool makes_return() {
         const double start = t_;
         t_ = length_ > 0 ? s_.question().repeats.start + beside_ + static_cast<double>(sizes_.size() + 1) * length_
                          : start + stretch_;
-        run_ = s_.runs_.go_on(run_, start, t_, motion::Grid::none(), passage_);
+        run_ = s_.runs_.continued(run_, start, t_, motion::Grid::none(), passage_);
         SteadyMotion& facts = s_.facts_;
         facts.outcome = run_.outcome;
         const Reach reach = reach_of(run_, s_.chart_, timeless_ && length_ > 0 ? 4 : 64);
@@ -340,7 +340,7 @@ private:
     }
 
     /// The smallest number of returns after which it repeats to this tolerance; 0: none.
-    std::size_t comes_back(double within) const {
+    std::size_t returns_until_repeat(double within) const {
         const auto periods = static_cast<std::size_t>(s_.question().periods);
         const std::size_t first = std::max<std::size_t>(periods, 1), longest = !timeless_    ? 32
                                                                                : length_ > 0 ? 2048
@@ -365,7 +365,7 @@ private:
         facts.period = length_ > 0 ? static_cast<double>(m) * length_ : t_ - times_[times_.size() - 1 - m];
         facts.periods = timeless_ ? 1 : static_cast<int>(std::round(facts.period / s_.question().repeats.period));
         facts.stable = true;
-        if (beside_ > 0) run_ = s_.runs_.go_on(run_, t_, t_ - beside_ + length_, motion::Grid::none());
+        if (beside_ > 0) run_ = s_.runs_.continued(run_, t_, t_ - beside_ + length_, motion::Grid::none());
         if (const auto middle = s_.complete_settled(run_)) s_.note_symmetry(Runs::at_stop(run_).y, *middle);
     }
 
@@ -393,8 +393,8 @@ private:
     motion::Run run_;             // the last run
     std::vector<double> sizes_;   // sizes of all runs
     std::size_t small_ = 0;       // number of successive runs, up to the last, with hardly any motion
-    std::vector<VectorXd> seen_;  // observed numbers at each return,
-    std::vector<double> times_;   // and its time
+    std::vector<VectorXd> seen_;  // observed numbers at each return
+    std::vector<double> times_;   // time of each return
     VectorXd size_;               // scale of the observed numbers
 };
 
@@ -572,7 +572,7 @@ std::optional<motion::Run> ReturnSearch::standing_beside(const motion::Run& run,
 
 std::optional<VectorXd> ReturnSearch::complete_settled(const motion::Run& so_far) {
     const double period = facts_.period, t = so_far.t_stop;
-    motion::Run run = runs_.go_on(so_far, t, t + period, motion::Grid::every(period / rows_of_period));
+    motion::Run run = runs_.continued(so_far, t, t + period, motion::Grid::every(period / rows_of_period));
     if (!model::is_whole(run.outcome)) return {};
     return complete_period(Runs::at_stop(so_far), std::move(run), period);
 }

@@ -46,8 +46,8 @@ HeldMode opposite(HeldMode held) {
     return held;
 }
 
-/// Returns whether a shift of the start only shifts the whole run.
-bool is_alike(Runs& runs, const Eigen::VectorXd& shift, double length) {
+/// Returns whether a shift of the initial state shifts the whole run by the same amount.
+bool shifts_as_a_whole(Runs& runs, const Eigen::VectorXd& shift, double length) {
     constexpr double part_of_shift = 0.73;
     const double start = runs.question().repeats.start;
     FullState plain = runs.first(), shifted = plain;
@@ -93,7 +93,7 @@ Chart chart_of(Runs& runs) {
         if (root(of) != of || grounded[static_cast<std::size_t>(of)]) continue;
         VectorXd shift = VectorXd::Zero(runs.first().y.size());
         for (Index i = 0; i < n; ++i) shift[i] = root(i) == of ? 1 : 0;
-        if (!is_alike(runs, shift, length)) continue;
+        if (!shifts_as_a_whole(runs, shift, length)) continue;
         for (Index i = 0; i < n; ++i) {
             if (root(i) == of) from[static_cast<std::size_t>(i)] = of;
         }
@@ -197,8 +197,8 @@ motion::Run Runs::run(const FullState& from, double start, double end, const mot
     return run(drive, start, end, rows, dense, before);
 }
 
-motion::Run Runs::go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
-                        const std::optional<model::WantedEvent>& section) {
+motion::Run Runs::continued(const motion::Run& before, double start, double end, const motion::Grid& rows,
+                            const std::optional<model::WantedEvent>& section) {
     if (!section) {
         return run(question_.drive, start, end, rows, true, before.left == nullptr ? nullptr : before.left->carry);
     }

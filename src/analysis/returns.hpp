@@ -34,9 +34,9 @@ public:
     model::Drive from(const FullState& moment, double start) const;
     [[nodiscard]] motion::Run run(const FullState& from, double start, double end, const motion::Grid& rows, bool dense,
                                   const std::optional<model::WantedEvent>& section = {});
-    /// Continues another run with the memory of its controllers and delays; an empty run means from the start.
-    [[nodiscard]] motion::Run go_on(const motion::Run& before, double start, double end, const motion::Grid& rows,
-                                    const std::optional<model::WantedEvent>& section = {});
+    /// Continues another run with the memory of its controllers and delays; an empty run means a run from the start.
+    [[nodiscard]] motion::Run continued(const motion::Run& before, double start, double end, const motion::Grid& rows,
+                                        const std::optional<model::WantedEvent>& section = {});
     [[nodiscard]] static FullState at_stop(const motion::Run& run);
     /// The longest natural period of a body on the stiffness around it; 0 without stiffness.
     double natural_period() const;
@@ -56,7 +56,8 @@ private:
 /// The coordinates of the return map; angles of rotating bodies are measured from another body.
 class Chart {
 public:
-    /// `from` has for each body the body from which its angle is measured; -1: the ground; itself: not measured.
+    /// `from` has for each body the body from which its angle is measured; -1: the ground; the body itself: not
+    /// measured.
     explicit Chart(std::vector<Eigen::Index> from) : from_(std::move(from)) {}
 
     bool measures(Eigen::Index k) const {
@@ -79,8 +80,8 @@ private:
 /// alone is measured from the ground, where a drift is growth, unless the question says that its angle advances.
 Chart chart_of(Runs& runs);
 
-/// The map from one return to the next: from period to period, or from passage to passage of a section. A place has the
-/// measured numbers except that of the section, each in its unit.
+/// The map from one return to the next: from period to period, or from passage to passage of a section. A place
+/// consists of the measured numbers except that of the section, each in its unit.
 class Returns final : public Map {
 public:
     /// The surface where a measured number has this value, passed upwards (way = 1) or downwards (-1).
@@ -104,7 +105,7 @@ public:
                                          int order) override;
     double start() const { return start_; }
     /// Makes each return end at the opposite of its last place, as after half a period of a symmetric motion.
-    void take_opposites() { sign_ = -1; }
+    void end_at_opposites() { sign_ = -1; }
     /// The indices in y of the numbers of a place.
     const std::vector<Eigen::Index>& own() const { return own_; }
 
@@ -159,15 +160,15 @@ std::vector<Acting> acting_in(const SteadyQuestion& question);
 /// The name of an excitation or a rate that depends on t; empty if there is none. Functions are sampled.
 std::string timed_in(const SteadyQuestion& question);
 
-/// The common repetition of everything that drives the run: period 0 if nothing depends on time; none if unknown.
+/// The common repetition of everything that drives the run: period 0 if nothing depends on time; empty if unknown.
 /// Functions are sampled, as only the user knows their period.
 std::optional<Repetition> repetition_of(const SteadyQuestion& question);
 /// Compares everything that drives the run over one period with the next; the error names the two values that differ
 /// most.
 std::optional<text::Error> not_periodic(const SteadyQuestion& question, const Repetition& repeats);
-/// The question's `settles`; none if controllers and drive have no common period, or one that is too long.
+/// The question's `settles`; empty if controllers and drive have no common period, or one that is too long.
 std::optional<double> settles_after(const SteadyQuestion& question);
-/// The question for a search by returns: for a plain system with the longest stretch that its spring allows.
+/// The question as searched by returns: for a plain system with the longest stretch that its spring allows.
 SteadyQuestion for_returns(const SteadyQuestion& question);
 
 /// The motion that a run from the start of the question leads to: of all bodies, or as seen from the joint of the

@@ -81,7 +81,7 @@ public:
                 -sine_.r * sine_.r * load.imag() + product(root_, rate).real()};
     }
 
-    /// The time until the velocity is zero; none if the slide does not start, or takes longer than `most` (in x).
+    /// The time until the velocity is zero; empty if the slide does not start, or takes longer than `most` (in x).
     std::optional<double> first_zero(double most) const {
         Complex load = forced_, own = free_;
         double before = 0, v_before = 0;
@@ -171,8 +171,7 @@ double next_of(double base, double now) {
     return base + 2 * half_load * std::ceil((now - base) / (2 * half_load));
 }
 
-/// Finds a motion with stops. It depends on the place of rest alone; a zero of one function makes it opposite half a
-/// period later.
+/// Finds a motion with stops. It is determined by the place of rest: a root of off().
 class StoppingSearch {
 public:
     explicit StoppingSearch(const SingleSine& sine) : sine_(sine), arcs_(sine) {}
@@ -205,14 +204,14 @@ private:
         double way = 1;  ///< direction of the release
     };
 
-    /// The release forward from y; none if the load is too small.
+    /// The release forward from y; empty if the load is too small.
     std::optional<Stick> released_from(double y) const {
         const double needed = y + sine_.holding;
         if (!(std::fabs(needed) < 1)) return {};
         return Stick{y, std::asin(needed), 1};
     }
 
-    /// The next place of rest; none after a slide of three periods.
+    /// The next place of rest; empty if the mass slides for three periods.
     std::optional<Stick> next(const Stick& from) {
         double phase = from.release, y = from.y, way = from.way;
         const double latest = phase + 6 * half_load;
@@ -241,7 +240,8 @@ private:
         return stick.release < never ? std::optional(stick) : std::nullopt;
     }
 
-    /// The deviation from the opposite place half a period later, n stops on.
+    /// The deviation of the place of rest n stops later from the opposite one; empty unless that is half a period
+    /// later.
     std::optional<double> off(double y, std::size_t n) {
         auto stick = released_from(y);
         const double begin = stick ? stick->release : 0;
@@ -281,8 +281,8 @@ private:
 
     SingleSine sine_;
     SineArcs arcs_;
-    double wanted_ = -1e300;                // a phase of the load,
-    std::optional<theory::Motion2> found_;  // and the state there, set when next() passes it
+    double wanted_ = -1e300;                // a phase of the load
+    std::optional<theory::Motion2> found_;  // the state there, set when next() passes it
 };
 
 }  // namespace
@@ -321,8 +321,8 @@ bool ShortSlides::slide(double rest) {
     return rest >= 0 && start(sine_.spare + rest) && find_end();
 }
 
-/// Released from -y, the mass advances beyond 0. The derivative is the fraction of a shift that remains, with the sign
-/// of the opposite place.
+/// A mass released from -y advances beyond 0. The derivative is the fraction of a shift that remains, with the sign of
+/// the opposite place.
 Map::Return ShortSlides::operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& /*mode*/,
                                     int /*returns*/) {
     Return back{.to = from};
@@ -392,8 +392,7 @@ double ShortSlides::speed_by_square(double x) const {
     return sum;
 }
 
-/// The fraction of a shift of the start that decays within x of free motion, which is the response to a constant load
-/// of 1.
+/// The fraction of a shift of the start that decays within x of free motion: the response to a constant load of 1.
 double ShortSlides::forgets(double x) const {
     double before = 0, now = 0, sum = 0, power = 1;  // terms n and n + 1 of the series, and x^n
     for (std::size_t n = 0; n + 2 < terms; ++n) {

@@ -28,12 +28,12 @@ struct SingleSine {
     model::State state(const theory::Motion2& y) const { return {unit * y.y, unit * omega0 * y.dy}; }
 };
 
-/// None for another kind of system or M, or if r is out of the range of the closed forms.
+/// Empty for other systems or other M, or if r is out of the range of the closed forms.
 std::optional<SingleSine> single_sine(const SteadyQuestion& question);
 
-/// The state of the steady motion when the drive starts, usually accurate to rounding. Its search may step over a short
-/// reversal, so callers must verify it. None if the closed forms lead nowhere, the mass never moves, or half periods
-/// are not opposite.
+/// The state of the steady motion when the drive starts, usually accurate to rounding. The search may step over a short
+/// reversal, so callers must verify the state. Empty if the closed forms find no motion, the mass never moves, or half
+/// periods are not opposite.
 std::optional<model::State> sine_start(const SingleSine& sine);
 
 /// The map of a load that barely exceeds friction: it releases the mass briefly about its crest in each half period.
@@ -41,7 +41,8 @@ std::optional<model::State> sine_start(const SingleSine& sine);
 /// friction and spring torques, as in a run, would lose them. Maps a place of rest to the opposite of the next one.
 class ShortSlides final : public Map {
 public:
-    /// Returns the map at its fixed point; none if the slides are not short, or the motion may not be unique (Re > Rd).
+    /// Returns the map at its fixed point; empty if the slides are not short, or the motion may not be unique (Re >
+    /// Rd).
     static std::optional<ShortSlides> closed(const SteadyQuestion& question);
 
     Return operator()(const Eigen::VectorXd& from, const std::optional<HeldMode>& mode, int returns) override;
@@ -51,7 +52,7 @@ public:
         return {};
     }
 
-    /// The facts about the motion, without those that follow from multipliers.
+    /// The facts about the motion, except those that follow from multipliers.
     SteadyMotion motion(const SteadyQuestion& question) const;
     std::vector<std::complex<double>> multipliers() const;
     /// The amplitude and phase of theta's fundamental, counted from the start of the drive.
@@ -76,8 +77,8 @@ private:
     double rest_ = 0;     ///< the mass is released forward from -rest_
     double release_ = 0;  ///< phase of the release
     double end_ = 0;      ///< end of the slide, x since the release
-    Series series_{};     ///< displacement since the release,
-    Series speed_{};      ///< and its speed times x
+    Series series_{};     ///< displacement since the release
+    Series speed_{};      ///< speed since the release, times x
 };
 
 }  // namespace dinal::analysis

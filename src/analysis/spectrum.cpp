@@ -68,7 +68,7 @@ double weight(SpectrumWindow window, double phase) {
 std::size_t evenly_spaced(std::span<const double> times) {
     if (times.size() < 3) return times.size();
     const double step = times[1] - times[0];
-    // Late times are rounded, and so is their step.
+    // Late times are rounded, and so is their difference.
     const double rounding =
         2 * std::numeric_limits<double>::epsilon() * std::max(std::fabs(times[0]), std::fabs(times.back()));
     std::size_t n = 2;

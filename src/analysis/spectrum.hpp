@@ -20,7 +20,7 @@ Spectrum spectrum_of(std::span<const double> values, double dt, SpectrumWindow w
 /// unit is the square of the values' unit per frequency; the sum times the frequency step is the variance.
 Spectrum density_of(std::span<const double> values, double dt, SpectrumWindow window, std::size_t length);
 
-/// The number of evenly spaced times from the first on.
+/// The number of times, from the first on, that are evenly spaced.
 std::size_t evenly_spaced(std::span<const double> times);
 
 }  // namespace dinal::analysis

@@ -61,7 +61,7 @@ SteadyMotion motion_of(const SteadyQuestion& question, bool near, const motion::
     return motion_by_periods(question, near, monitor);
 }
 
-/// The motion of a free block may repeat its velocity while the angle advances, which is not growth.
+/// A free block may repeat its velocity while its angle advances: that is not growth.
 SteadyMotion motion_or_advance(const SteadyQuestion& question, bool near, const motion::Monitor& monitor) {
     SteadyMotion motion = motion_of(question, near, monitor);
     const bool drifts = motion.status == SteadyStatus::grows || motion.status == SteadyStatus::none;
@@ -82,8 +82,8 @@ SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Mo
 
 namespace {
 
-/// Returns whether the motions are equal; a mirror image is another one. `free`: nothing restores the angle, so all
-/// rests are one.
+/// Returns whether the motions are equal; a mirror image is different. `free`: nothing restores the angle, so all rests
+/// count as equal.
 bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size, bool free) {
     if (a.stands() && b.stands()) {
         if (free) return true;
@@ -122,8 +122,8 @@ std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, con
 
 namespace {
 
-// A rest at 0, searched from 0, does not tell how large other motions are.
-constexpr double smallest_size = 1e-200, untold_size = 1;
+// A rest at 0, searched from 0, gives no scale for other motions.
+constexpr double smallest_size = 1e-200, default_size = 1;
 
 /// Other motions of one plain body.
 std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
@@ -134,7 +134,7 @@ std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const Ste
     // At rest only the initial state indicates the size of other motions.
     if (known.stands())
         size = std::max({size, std::fabs(question.drive.start().theta), std::fabs(question.drive.start().velocity)});
-    if (!(size > smallest_size)) size = untold_size;
+    if (!(size > smallest_size)) size = default_size;
     const bool free = !(question.body.stiffness() > 0) && question.body.spring().none();
     const auto alike = [size, free](const SteadyMotion& a, const SteadyMotion& b) {
         return are_alike(a, b, size, free);
@@ -157,7 +157,7 @@ std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const Ste
         if (!known.stands()) continue;
         size = std::max({size, std::fabs(question.drive.theta0[i]), std::fabs(question.drive.velocity0[i])});
     }
-    if (!(size > smallest_size)) size = untold_size;
+    if (!(size > smallest_size)) size = default_size;
     const auto alike = [&](const SteadyMotion& a, const SteadyMotion& b) {
         if (a.stands() && b.stands()) return true;
         if (a.status != b.status) return false;

@@ -31,11 +31,11 @@ struct SteadyQuestion {
     model::Drive drive;
     /// the body, or the one of interest, as an oscillator
     model::Oscillator body;
-    Repetition repeats = {};                ///< period 0: nothing depends on time, the period of a cycle is unknown
-    int periods = 0;                        ///< periods of M in one of the motion; 0: as many as needed
-    std::optional<std::size_t> joint = {};  ///< the body or link of interest; none: all that have names
-    /// For sampled or delayed controllers: the time after which drive and sampling repeat; 0: any; -1: no such
-    /// controllers.
+    Repetition repeats = {};  ///< period 0: nothing depends on time, the period of a cycle is unknown
+    int periods = 0;          ///< how many periods of M one period of the motion lasts; 0: as many as needed
+    std::optional<std::size_t> joint = {};  ///< the body or link of interest; none: all named ones
+    /// For sampled or delayed controllers: the time after which drive and sampling repeat; 0: arbitrary; -1: there are
+    /// no such controllers.
     double settles = -1;
     double longest = model::never;  ///< longest stretch of its runs, time units
     /// whether the angle of a plain body under M may advance from period to period, as that of named bodies may
@@ -73,15 +73,16 @@ struct PeriodOfBodies {
 
 /// The runs of a motion found by returns; empty for any other.
 struct FoundByReturns {
-    std::shared_ptr<const motion::Run> run = {};           ///< one period of the body or link of interest
-    std::shared_ptr<const SteadyQuestion> question = {};   ///< begins with the motion; null: `run` ends a longer one
-    std::shared_ptr<const model::Drive> drive = {};        ///< of a run that is periodic from its start
+    std::shared_ptr<const motion::Run> run = {};  ///< one period of the body or link of interest
+    /// the question whose start lies on the motion; null: `run` ends a longer run
+    std::shared_ptr<const SteadyQuestion> question = {};
+    std::shared_ptr<const model::Drive> drive = {};        ///< the drive of a run that is periodic from its start
     std::shared_ptr<const PeriodOfBodies> of_bodies = {};  ///< null at rest
 };
 
 struct SteadyMotion {
     SteadyStatus status = SteadyStatus::none;
-    int periods = 1;     ///< periods of M in one of the motion
+    int periods = 1;     ///< how many periods of M one period of the motion lasts
     double period = 0;   ///< period of the motion
     model::State start;  ///< at the beginning of M's period
     double amplitude = 0, low = 0, high = 0, t_high = 0;
@@ -94,7 +95,8 @@ struct SteadyMotion {
     std::pair<double, double> rest;  ///< range of angles at which it may rest, if it adheres
     double growth = 0;               ///< growth of the amplitude in a period of M; infinite if not even
     int maps = 0;                    ///< number of periods that were run
-    /// of status none: greatest change of the last periods from earlier ones, in amplitudes, if they nearly repeat
+    /// if no motion was found: greatest change of the last periods from earlier ones, in amplitudes, if they nearly
+    /// repeat
     std::optional<double> change = {};
     model::Outcome outcome = model::Outcome::reached_end;    ///< outcome of the last run
     std::optional<model::Contradiction> contradiction = {};  ///< cause of Outcome::not_a_function
@@ -109,7 +111,7 @@ struct SteadyMotion {
 /// The steady motion that a run from the start of the question leads to, as seen from its joint.
 SteadyMotion steady_motion(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
-/// The same from a start near the answer, such as the motion before a small change of a parameter.
+/// Like steady_motion(), from a start near the answer, such as the motion before a small change of a parameter.
 SteadyMotion steady_motion_near(const SteadyQuestion& question, const motion::Monitor& monitor = {});
 
 /// Other motions, found from other starts, each with a question whose start leads to it. Empty if `known` is not a
@@ -134,7 +136,7 @@ SteadyShape shape_of(const SteadyQuestion& question, const SteadyMotion& motion,
 /// Describes the answer in sentences.
 std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
                            const std::vector<OtherMotion>& others);
-/// The same for all bodies.
+/// Describes the motion of all bodies.
 std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, std::size_t others);
 
 }  // namespace dinal::analysis

@@ -108,7 +108,8 @@ bool contracts(const SteadyQuestion& question) {
 
 double distance_from_one(const std::vector<std::complex<double>>& multipliers) {
     double least = model::never;
-    constexpr double far = 1e-3;  // this near the unit circle a disturbance persists
+    // a multiplier within this distance of the unit circle means that a disturbance persists
+    constexpr double far = 1e-3;
     constexpr int most = 32;
     for (const std::complex<double>& multiplier : multipliers) {
         const bool stays = std::fabs(std::abs(multiplier) - 1) <= far;
@@ -118,7 +119,7 @@ double distance_from_one(const std::vector<std::complex<double>>& multipliers) {
     return least;
 }
 
-bool is_alike_both_ways(const SteadyQuestion& question) {
+bool is_symmetric_problem(const SteadyQuestion& question) {
     const model::Drive& drive = question.drive;
     if (question.is_timeless() || !drive.states.empty() || !drive.events.empty()) return false;
     const bool by_numbers = question.is_plain();  // only then can feedback be evaluated at the opposite state

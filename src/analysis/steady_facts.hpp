@@ -14,18 +14,18 @@ namespace dinal::analysis {
 /// of the difference of two motions cannot grow in any joint.
 bool contracts(const SteadyQuestion& question);
 
-/// The distance of these multipliers from 1, after one or several periods; if it is 0, neighbouring motions are
-/// periodic, too.
+/// The distance of these multipliers from 1, after one or several periods; at 0, neighbouring motions are also
+/// periodic.
 double distance_from_one(const std::vector<std::complex<double>>& multipliers);
 
 /// Returns whether friction, springs, walls and M are antisymmetric half a period later.
-bool is_alike_both_ways(const SteadyQuestion& question);
+bool is_symmetric_problem(const SteadyQuestion& question);
 
 /// The tolerance of a multiplier that counts as 1.
 inline constexpr double neutral_within = 1e-6;
 
-/// Start number i around a motion, at distances from a hundredth of `farthest` up to it: angle, and velocity over a
-/// frequency.
+/// Start number i around a motion, at distances from a hundredth of `farthest` up to `farthest`: angle, and velocity
+/// over a frequency.
 std::complex<double> start_around(int i, double farthest, std::size_t body = 0);
 
 /// The distinct motions that the questions lead to, without those equal to the known one.
@@ -67,7 +67,7 @@ void fill_from_run(const SteadyQuestion& question, const motion::Run& run, Stead
 /// The question with this start.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
-/// The motion as seen from the joint of the question; `run` is its period seen from there, null at rest.
+/// The motion as seen from the joint of the question; `run` is its period as seen from there, null at rest.
 SteadyMotion seen_from(const SteadyQuestion& question, const SteadyMotion& whole,
                        std::shared_ptr<const motion::Run> run);
 /// The same for a motion with a stored period.

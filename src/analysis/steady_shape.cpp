@@ -16,7 +16,7 @@
 namespace dinal::analysis {
 namespace {
 
-constexpr double least_harmonic = 1e-9;  // smaller harmonics, relative to the whole, have no phase but rounding
+constexpr double least_harmonic = 1e-9;  // smaller harmonics, relative to the whole, have a phase of mere rounding
 
 // The mean and the fundamental of a steady motion from its friction: as k theta + C theta' + I theta'' is M minus
 // friction, both follow from the integrals of M and of friction, which is constant during a slide and M - k theta
@@ -35,7 +35,7 @@ bool is_linear_but_for_friction(const SteadyQuestion& question) {
 }
 
 /// Mean and fundamental of theta from a run of one period, or of half a period if symmetric. `M_wave` is the
-/// fundamental of M. None if friction nearly cancels M.
+/// fundamental of M. Requires is_linear_but_for_friction(). Empty if friction nearly cancels M.
 std::optional<Fundamental> by_friction(const SteadyQuestion& question, const SteadyMotion& motion,
                                        const motion::Run& run, std::complex<double> M_wave) {
     const model::Lowered system(question.body);
