@@ -727,8 +727,8 @@ std::string label_of(const Data& data, const std::string& name) {
 
 constexpr double spectrum_decades = 1e-6;  // smallest plotted amplitude of a spectrum, relative to the largest
 
-/// The frequencies with amplitudes in that range, if they cover only part of the spectrum.
-std::optional<plots::Interval> telling_frequencies(const Data& data, const plots::Curve& curve) {
+/// The frequencies with larger amplitudes than this, if they cover only part of the spectrum.
+std::optional<plots::Interval> significant_frequencies(const Data& data, const plots::Curve& curve) {
     if (!data.is_spectrum || curve.size() == 0) return std::nullopt;
     double greatest = 0, last = 0;
     for (const double y : curve.y.values) greatest = y > greatest ? y : greatest;
@@ -742,7 +742,7 @@ std::optional<plots::Interval> telling_frequencies(const Data& data, const plots
 
 /// Limits of y that show the interesting part of a curve: six decades of a spectrum; of a response a few times its
 /// typical height, as it is unbounded near a pole.
-std::optional<plots::Interval> telling_limits(const Data& data, const plots::Curve& curve) {
+std::optional<plots::Interval> significant_limits(const Data& data, const plots::Curve& curve) {
     std::vector<double> values;
     std::ranges::copy_if(curve.y.values, std::back_inserter(values), [](double y) { return std::isfinite(y); });
     if (values.empty() || (!data.is_spectrum && data.pieces_of.empty())) return std::nullopt;
@@ -971,7 +971,8 @@ int plot_curves(lua_State* L, const lua::Options& options, const Data& data, Dra
     figure.x.label = label_of(data, x);
     plots::Curve curve;
     if (!data.points_of.empty() && !options.has("y") && x != data.points_of) y = {data.points_of};
-    const bool leaps = columns.over.size() == 2 && x == columns.over[0];  // a line would jump between grid rows
+    // x is the outer parameter: a line would jump between grid rows
+    const bool leaps = columns.over.size() == 2 && x == columns.over[0];
     if (!data.points_of.empty() || leaps) curve.style = plots::Style::points;
     figure.y.label = y.size() == 1 ? label_of(data, y.front()) : "";
     options.fill(curve);
@@ -979,8 +980,8 @@ int plot_curves(lua_State* L, const lua::Options& options, const Data& data, Dra
     add_overlays(L, options, data, columns, figure);
     figure.y.logarithmic = data.is_spectrum;
     if (y.size() == 1) {
-        figure.x.limits = telling_frequencies(data, curve);
-        figure.y.limits = telling_limits(data, curve);
+        figure.x.limits = significant_frequencies(data, curve);
+        figure.y.limits = significant_limits(data, curve);
     }
     apply_options(L, options, figure);
     if (!options.has("ylim") && figure.y.logarithmic != data.is_spectrum) figure.y.limits.reset();

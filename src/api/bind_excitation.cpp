@@ -83,7 +83,7 @@ bool agree(model::Formula& formula, const model::Excitation& terms, const std::v
     return worst <= allowed * greatest;
 }
 
-/// Times between these, for the test.
+/// Times in this span, for agree().
 std::vector<double> times_within(double from, double to) {
     std::vector<double> times;
     for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {
@@ -92,8 +92,8 @@ std::vector<double> times_within(double from, double to) {
     return times;
 }
 
-/// A periodic, piecewise constant function as native terms, of which one jumps: two would have to jump at the same
-/// time, and do so within rounding only.
+/// A periodic, piecewise constant function as native terms of which only one jumps: two would jump at the same time
+/// only to rounding.
 std::optional<model::Excitation> levels(lua::LuaFunction& function, double from, double to, double period) {
     constexpr int most_pieces = 50;
     constexpr double least = 1e-9;  // fraction of a period by which rounding may shorten the last piece

@@ -121,7 +121,7 @@ struct FitAnswer {
 };
 using FitHandle = std::shared_ptr<const FitAnswer>;
 
-/// The error of a fitted value if the model is wrong.
+/// Replaces the error of a fitted value if the model is wrong.
 constexpr double withheld = std::numeric_limits<double>::quiet_NaN();
 
 // The record passed to identify{ ... }, and the choice of fitted parameters.
@@ -573,7 +573,7 @@ private:
         for (const std::string& name : free_names(L_, options_)) add_free(name);
         for (std::size_t body = 0; body < system_.bodies.size(); ++body) {
             const std::string before = before_names(system_, body);
-            if (!theta0_[body] && place_counts(body)) {
+            if (!theta0_[body] && initial_angle_matters(body)) {
                 const MeasuredColumn* theta = measured(body, Measure::theta);
                 const double begins = theta == nullptr || std::isnan(theta->numbers[0]) ? 0 : theta->numbers[0];
                 free_.push_back({.name = before + "theta0", .start = begins, .typical = 0.1 * angle_});
@@ -624,7 +624,7 @@ private:
     }
 
     /// Returns whether the initial angle matters: without a spring, no velocity depends on it.
-    bool place_counts(std::size_t body) const {
+    bool initial_angle_matters(std::size_t body) const {
         for (std::size_t j = 0; j < system_.joints.size(); ++j) {
             const model::Joint& joint = system_.joints[j];
             if (!joint.is_on(body)) continue;
@@ -1007,8 +1007,8 @@ private:
     std::vector<Fitted> free_;
     std::vector<MeasuredColumn> columns_;
     std::vector<double> t_;
-    std::vector<double> time_of_;                                     ///< of each measured value,
-    std::vector<int> column_of_;                                      ///< and its column
+    std::vector<double> time_of_;                                     ///< time of each measured value
+    std::vector<int> column_of_;                                      ///< column of each measured value
     std::vector<Eigen::Index> known_until_;                           ///< number of measured values up to each row
     std::vector<std::optional<double>> theta0_, velocity0_, offset_;  ///< given values, by body or link
     double swing_ = 1, time_ = 1, angle_ = 1, speed_ = 1;
@@ -1089,7 +1089,7 @@ int identify_record(lua_State* L) {
     if (question.M && !question.t.empty()) {
         if (auto terms = terms_alone(L, *question.M, question.t.front(), question.t.back())) question.M = terms;
     }
-    asking(L, [&](const motion::Monitor& monitor) {
+    call_checked(L, [&](const motion::Monitor& monitor) {
         auto found = analysis::identify(question, monitor);
         if (found) {
             fit->found = std::move(found).value();

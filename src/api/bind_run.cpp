@@ -529,7 +529,7 @@ lua::Pushed cycle_of_run(lua_State* L, const RunHandle& run) {
     std::vector<model::WantedEvent> wanted;
     if (run->origin) wanted = run->origin->drive.events;
     std::vector<model::Event> events = analysis::events_of_motion(result, wanted);
-    if (result.on_belt) {  // extremes of theta on a belt are no events
+    if (result.on_belt) {  // extremes of theta on a belt are not events
         const std::vector<model::Event> turns = motion::turns_on_belt(result);
         events.insert(events.end(), turns.begin(), turns.end());
         std::ranges::stable_sort(events, {}, &model::Event::t);

@@ -98,8 +98,9 @@ const Steady& of_one(lua_State* L, const Steady& s) {
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
     of_one(L, *s);
     if (!s->shape) {
-        asking(L, s->question,
-               [&](const motion::Monitor& monitor) { s->shape = analysis::shape_of(s->question, s->motion, monitor); });
+        call_checked(L, s->question, [&](const motion::Monitor& monitor) {
+            s->shape = analysis::shape_of(s->question, s->motion, monitor);
+        });
     }
     return *s->shape;
 }
@@ -109,8 +110,9 @@ const std::vector<SteadyHandle>& others_of(lua_State* L, const SteadyHandle& s) 
     Steady& all = s->whole ? *s->whole : *s;
     if (all.others) return *all.others;
     std::vector<analysis::OtherMotion> found;
-    asking(L, all.question,
-           [&](const motion::Monitor& monitor) { found = analysis::other_motions(all.question, all.motion, monitor); });
+    call_checked(L, all.question, [&](const motion::Monitor& monitor) {
+        found = analysis::other_motions(all.question, all.motion, monitor);
+    });
     all.others.emplace();
     for (auto& other : found) all.others->push_back(made(L, std::move(other.question), std::move(other.motion)));
     return *all.others;
@@ -377,7 +379,8 @@ int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuest
     const model::Excitation loads = question.drive.sum_of_loads();
     const auto note = watched_memories(L, options, loads, false);
     analysis::SteadyMotion found;
-    asking(L, question, [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
+    call_checked(L, question,
+                 [&](const motion::Monitor& monitor) { found = analysis::steady_motion(question, monitor); });
     check_motion(options, found);
     note(nullptr);
     lua::push<SteadyHandle>(L, made(L, std::move(question), std::move(found)));
@@ -418,7 +421,7 @@ std::optional<LuaRun> period_as_run(lua_State* L, const Steady& s) {
                       .rows = motion::Grid::every(s.motion.period / rows),
                       .integrator = {}};
     if (s.motion.by_returns.run) {
-        // Its origin repeats the approach to the motion, too; the rows are those of the last period.
+        // Its origin also repeats the approach to the motion; the rows are those of the last period.
         const motion::Run& last = *s.motion.by_returns.run;
         task.window = {.start = s.motion.by_returns.question ? last.t_start : asked.repeats.start, .end = last.t_stop};
         if (s.motion.by_returns.question) {
@@ -434,7 +437,7 @@ std::optional<LuaRun> period_as_run(lua_State* L, const Steady& s) {
     task.window = {.start = asked.repeats.start, .end = asked.repeats.start + s.motion.period};
     task.drive = {asked.drive.M(), s.motion.start};
     LuaRun made{.result = {}, .origin = std::make_shared<const source::Origin>(source::origin_of(L, task))};
-    asking(L, [&](const motion::Monitor& monitor) {
+    call_checked(L, [&](const motion::Monitor& monitor) {
         auto result = motion::simulate(*task.system, task.drive, task.window, task.rows, task.integrator, monitor);
         if (result) made.result = std::move(result).value();
     });
@@ -458,7 +461,7 @@ analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& option
     const auto is_script = [](const analysis::Acting& one) { return one.what->has_script(); };
     const bool scripts = !question.drive.states.empty() || std::ranges::any_of(acting, is_script);
     std::optional<analysis::Repetition> repeats;
-    asking(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
+    call_checked(L, question, [&](const motion::Monitor&) { repeats = analysis::repetition_of(question); });
     if (!repeats && !period) {
         options.fail("period",
                      scripts ? "the period of M is not known; give it with period = ..."
@@ -468,7 +471,7 @@ analysis::Repetition repetition_or_fail(lua_State* L, const lua::Options& option
     if (period) repeats = analysis::Repetition{repeats ? repeats->start : 0, *period};
     if (repeats->period > 0 && (period || scripts)) {
         std::optional<text::Error> wrong;
-        asking(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *repeats); });
+        call_checked(L, question, [&](const motion::Monitor&) { wrong = analysis::not_periodic(question, *repeats); });
         if (wrong) options.fail(*wrong);
     }
     return *repeats;
@@ -538,7 +541,8 @@ int steady_of_run(lua_State* L) {
     if (!question.is_plain() || question.drive.has_more()) {
         question.repeats.start = std::max(question.repeats.start, ended.t_stop);
     } else if (!question.is_timeless()) {
-        asking(L, [&](const motion::Monitor&) { question.drive.start_at(state_at_period(ended, question.repeats)); });
+        call_checked(
+            L, [&](const motion::Monitor&) { question.drive.start_at(state_at_period(ended, question.repeats)); });
     }
     return push_steady(L, options, std::move(question));
 }

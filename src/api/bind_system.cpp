@@ -90,7 +90,7 @@ model::Oscillator body_of(const SystemHandle& system) {
     return model::oscillator_at(*system, 0).value();
 }
 
-/// A fact about that body.
+/// A fact about the unnamed body.
 template <auto fact>
 auto of_body(const SystemHandle& system) {
     return std::invoke(fact, body_of(system));

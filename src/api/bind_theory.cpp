@@ -49,7 +49,7 @@ constexpr Range den_hartog_r{"be 0 or from 0.0001 to 1e6", [](double x) {
 constexpr Range at_least_one{"be at least 1: breakaway takes no less than kinetic friction",
                              [](double x) { return x >= 1; }};
 
-// For most functions; each is a number or a vector.
+// Options of most functions, each a number or a vector.
 constexpr Option r{.name = "r", .otherwise = needed, .range = text::not_negative, .meaning = "omega/omega0"};
 constexpr Option sliding_r{.name = "r", .otherwise = needed, .range = den_hartog_r, .meaning = "omega/omega0"};
 constexpr Option zeta{"zeta", "", "0", text::not_negative, "viscous damping ratio"};

@@ -297,7 +297,7 @@ void sort(Values v, std::vector<double>& result) {
 // ---- methods with an argument
 
 /// Pushes f(x, i).
-void ask(lua_State* L, double x, std::size_t i) {
+void push_result_of(lua_State* L, double x, std::size_t i) {
     lua_pushvalue(L, 2);
     lua_pushnumber(L, x);
     lua_pushinteger(L, static_cast<lua_Integer>(i) + 1);
@@ -307,7 +307,7 @@ void ask(lua_State* L, double x, std::size_t i) {
 Expected<Numbers> map(lua_State* L, const Vector& v, lua::Callable /*f*/) {
     Numbers result = lua::new_numbers(L, v.size());
     for (std::size_t i = 0; i < v.size(); ++i) {
-        ask(L, v.begin()[i], i);
+        push_result_of(L, v.begin()[i], i);
         if (!lua_isboolean(L, -1) && lua_type(L, -1) != LUA_TNUMBER) {
             return text::error("f must return a number, true or false, but f({:.6g}) is {}", v.begin()[i],
                                lua::describe(L, -1));
@@ -321,7 +321,7 @@ Expected<Numbers> map(lua_State* L, const Vector& v, lua::Callable /*f*/) {
 Numbers find(lua_State* L, const Vector& v, lua::Callable /*f*/) {
     Numbers places;
     for (std::size_t i = 0; i < v.size(); ++i) {
-        ask(L, v.begin()[i], i);
+        push_result_of(L, v.begin()[i], i);
         if (lua_toboolean(L, -1) != 0) places.push_back(static_cast<double>(i + 1));
         lua_pop(L, 1);
     }

@@ -19,13 +19,13 @@ using model::SystemHandle;
 /// The friction given by the options Rd, Re, friction and normal.
 model::ContactFriction asked_friction(lua_State* L, const lua::Options& options, const std::string& call);
 
-/// Calls f for each name in an option's table with its joint and the value on the top of the stack.
 enum class Names { bodies, links, both };
+/// Calls f for each name in an option's table with its joint and the value on the top of the stack.
 void for_each_named(lua_State* L, const lua::Options& options, const char* option, const model::System& system,
                     Names which, const std::function<void(std::size_t)>& f);
 /// The drive given by a call, with its start; by default from rest at 0.
 model::Drive asked_drive(lua_State* L, const lua::Options& options, const model::System& system);
-/// Sets the form in which users' functions receive theta, velocity and z.
+/// Sets the names by which users' functions receive angles, velocities and states.
 void name_functions(lua::CallState& call, const model::System& system, const model::Drive& drive);
 
 std::vector<std::string> body_names(const model::System& system);

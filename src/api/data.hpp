@@ -43,7 +43,7 @@ struct DataColumn {
     std::string label() const { return model::name_with_unit(name, unit); }
 };
 
-/// The first of these words that is no number, in quotes: it made a column of a file one of words.
+/// The first of these words that is not a number, in quotes: it makes the column of a file one of words.
 std::string first_word(const std::vector<std::string>& words);
 
 struct Data;

@@ -29,8 +29,8 @@ struct LuaRun {
     std::string readings = {};                          ///< sentences on functions that were read as formulas
     model::Units units = {};                            ///< from a file; a simulated run has those of its system
     lua::MemoryCharge rows = {};                        ///< memory of rows read from a file
-    std::optional<std::size_t> joint = {};              ///< the named body or link from which it is seen
-    std::shared_ptr<const LuaRun> whole = {};           ///< the run of all bodies of which it is a view
+    std::optional<std::size_t> joint = {};              ///< the named body or link that this view shows
+    std::shared_ptr<const LuaRun> whole = {};           ///< the run of all bodies, if this is a view
     // The run as seen from each joint, made on demand. Weak, as these keep the run of all bodies.
     mutable std::vector<std::weak_ptr<const LuaRun>> parts = {};
 
@@ -73,7 +73,7 @@ Data rows_of(const RunHandle& run);
 /// Raises an error that `member`, written as ".theta" or ":cycle", needs one body or link, if the run has several.
 void check_one(lua_State* L, const LuaRun& run, std::string_view member);
 
-/// The body or link from which it is seen, as an oscillator; none for all bodies, or for a run read from a file.
+/// The body or link that the run shows, as an oscillator; none for all bodies, or for a run read from a file.
 std::optional<model::Oscillator> alone(const LuaRun& run);
 
 /// The run as seen from this joint; the run itself if it is already seen from one or has a single unnamed body.
@@ -123,7 +123,7 @@ lua::Pushed run_states(lua_State* L, const RunHandle& run);
 /// The units in the option; none if absent.
 std::optional<model::Units> asked_units(lua_State* L, const lua::Options& options);
 
-/// The units of its system, or those in the file from which it was read.
+/// The units of the run's system, or those in the file from which it was read.
 const model::Units& units_of(const LuaRun& run);
 
 /// The walls by name, without absent ones; none without walls.

@@ -30,9 +30,8 @@ int deliver(lua_State* L, const lua::Options& options, std::vector<plots::Figure
 /// plot{ ... }
 int plot_vectors(lua_State* L);
 
-/// Receives shown pictures; by default they go to standard output as text. Pictures written to a file are passed as
-/// well.
 enum class Shown { here, in_file };
+/// Receives shown pictures, and those written to a file. By default they go to standard output as text.
 using PictureViewer = void (*)(const Picture& picture, Shown where);
 void show_pictures_by(PictureViewer viewer);
 

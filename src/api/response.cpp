@@ -356,7 +356,8 @@ private:
         const bool is_value = text::contains(values_, x);
         // Between the values, M counts as periodic as at the values.
         std::optional<analysis::Repetition> known;
-        if (!is_value) asking(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
+        if (!is_value)
+            call_checked(L_, question, [&](const motion::Monitor&) { known = analysis::repetition_of(question); });
         if (known) return {known->start, period.value_or(known->period)};
         return repetition_or_fail(L_, own, question, period);
     }
@@ -441,9 +442,9 @@ private:
     const lua::Options& options_;
     ResponseOptions asked_;
     std::vector<DataColumn> parameters_;  // one or two
-    std::string varied_;                  // the last of them
-    std::vector<double> values_;          // its values
-    double beside_ = 0;                   // present value of the first of two
+    std::string varied_;                  // name of the last parameter
+    std::vector<double> values_;          // values of the last parameter
+    double beside_ = 0;                   // present value of the first of two parameters
     bool function_ = false;
     int place_ = 0;
 };
@@ -555,7 +556,7 @@ int response_of(lua_State* L, const lua::Options& options, ResponseCall call) {
             }
         }
     };
-    asking(L, call.question(call.values().front()), work);
+    call_checked(L, call.question(call.values().front()), work);
     if (parts.back().curve.contradiction) options.fail({model::sentence_with_cure(*parts.back().curve.contradiction)});
     const std::vector<VariedColumn> over = call.columns();
     Data data = response_data(rows, over, call.system());

@@ -83,7 +83,7 @@ inline double greatest_angle(const analysis::SteadyMotion& motion) {
 
 /// Calls `work`, which may evaluate user functions, and raises their errors.
 template <class Work>
-void asking(lua_State* L, Work work) {
+void call_checked(lua_State* L, Work work) {
     lua::CallState call(L);
     work([](double) { return !lua::interrupt_requested(); });
     if (lua::interrupt_requested()) lua::raise_interrupted(L);
@@ -91,7 +91,7 @@ void asking(lua_State* L, Work work) {
 }
 /// The same for functions that receive the motion of the question.
 template <class Work>
-void asking(lua_State* L, const analysis::SteadyQuestion& question, Work work) {
+void call_checked(lua_State* L, const analysis::SteadyQuestion& question, Work work) {
     lua::CallState call(L);
     name_functions(call, *question.system, question.drive);
     work([](double) { return !lua::interrupt_requested(); });
