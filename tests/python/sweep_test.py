@@ -4,6 +4,7 @@
 """
 
 import concurrent.futures as cf
+import functools
 import importlib.util
 import multiprocessing
 import os
@@ -61,8 +62,6 @@ def die_often(p):
 
 MAP = """
 return { over = { r = vector.linspace(0.3, 2, 20), g = vector.linspace(0, 1, 15) }, seed = 3, file = "map.csv", run = function(p)
-    local start, wait = os.clock(), tonumber(os.getenv("WAIT")) or 0
-    while os.clock() - start < wait do end
     if p.r > 1.9 and p.g > 0.9 then error("far away") end
     local s = nondimensional{ friction_ratio = p.g }:steady{ M = excitation.harmonic{ frequency = p.r } }
     return { A = s.amplitude, stops = s.stops, u = math.random() }
@@ -84,6 +83,19 @@ if __name__ == "__main__":
     except KeyboardInterrupt:
         sys.exit(130)
 """
+
+
+@functools.cache
+def dask():
+    """A client of two workers for all tests, which outlive the folder of each."""
+    from dask.distributed import Client, LocalCluster
+    before = os.getcwd()
+    os.chdir("/")
+    client = Client(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0"))
+    os.chdir(before)
+    unittest.addModuleCleanup(client.cluster.close)
+    unittest.addModuleCleanup(client.close)
+    return client
 
 
 class InAFolder(unittest.TestCase):
@@ -134,67 +146,43 @@ class Engines(InAFolder):
     def test_dask(self):
         if not importlib.util.find_spec("distributed"):
             self.skipTest("no dask.distributed: apt-get install python3-distributed")
-        with self.dask() as client:
-            self.check(client.get_executor())
-            self.check(client.get_executor(), run=dinal.lua("function(p) return { y = p.r } end"))
+        self.check(dask().get_executor())
 
-    def dask(self):
-        import contextlib
-        from dask.distributed import Client, LocalCluster
-        stack = contextlib.ExitStack()
-        return stack.enter_context(Client(stack.enter_context(LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0"))))
-
-    def test_a_lua_file(self):
-        """dinal on threads, and python3 -m dinal.sweep on processes, MPI and Dask."""
-        pathlib.Path("map.lua").write_text(MAP)
-        subprocess.run([PROGRAM, "-e", "sweep(dofile('map.lua'))"], check=True)
-        wanted = pathlib.Path("map.csv").read_bytes()
-        engines = {"processes": ["-m", "dinal.sweep", "map.lua", "--workers", "2"]}
-        if shutil.which("mpirun") and importlib.util.find_spec("mpi4py"):
-            engines["MPI"] = ["-m", "mpi4py.futures", "-m", "dinal.sweep", "map.lua", "--mpi"]
-        if importlib.util.find_spec("distributed"):
-            client = self.dask()
-            self.addCleanup(client.close)
-            engines["Dask"] = ["-m", "dinal.sweep", "map.lua", "--dask", client.scheduler.address]
-        for name, command in engines.items():
-            with self.subTest(name):
-                os.remove("map.csv")
-                under = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", "3"] if name == "MPI" else []
-                done = subprocess.run([*under, sys.executable, *command], capture_output=True, text=True, timeout=120)
-                equal(done.returncode, 0, done.stderr)
-                self.assertIn("data: 300 points, 4 of them failed", done.stdout)
-                equal(pathlib.Path("map.csv").read_bytes(), wanted)
-                equal(self.files(), ["map.csv", "map.lua"])
-        pathlib.Path("map.lua").write_text("return 3")
-        self.assertIn("must return a table of the options of sweep", self.python("-m", "dinal.sweep", "map.lua").stderr)
-
-
-class Page(InAFolder):
     def test_many_machines(self):
-        """What the page shows runs: the script on each engine, with fewer points."""
+        """What the page shows runs, with fewer points: its script and a map in Lua on each engine, and dinal itself."""
         page = (pathlib.Path(SOURCE) / "docs/many-machines.md").read_text()
-        script, map_file = re.search("```python\n(.*?)```", page, re.S)[1], re.search("```lua\n(.*?)```", page, re.S)[1]
-        pathlib.Path("map.py").write_text(script.replace("400", "20").replace("200", "10"))
-        pathlib.Path("map.lua").write_text(map_file.replace("400", "20").replace("200", "10"))
+        script, map_file = (re.search(f"```{language}\n(.*?)```", page, re.S)[1].replace("400", "20").replace("200", "10")
+                            for language in ("python", "lua"))
+        for text in (map_file, MAP):
+            pathlib.Path("map.lua").write_text(text)
+            subprocess.run([PROGRAM, "-e", "sweep(dofile('map.lua'))"], check=True)
+            wanted = pathlib.Path("map.csv").read_bytes()
+            os.remove("map.csv")
+        pathlib.Path("map.py").write_text(script)
         commands = re.findall(r"`(python3 map.py .*?|mpirun .*? map.py mpi)`", page) + re.findall(r"^((?:python3|mpirun) .*-m dinal.sweep .*)$", page, re.M)
         equal(len(commands), 6)
-        files = set()
+        rows = set()
         for command in commands:
-            if "dask" in command:
-                if not importlib.util.find_spec("distributed"):
-                    continue
-                client = Engines.dask(self)
-                self.addCleanup(client.close)
-                command = command.replace("tcp://head:8786", client.scheduler.address)
+            if "dask" in command and not importlib.util.find_spec("distributed"):
+                continue
             if "mpirun" in command and not (shutil.which("mpirun") and importlib.util.find_spec("mpi4py")):
                 continue
+            if "dask" in command:
+                command = command.replace("tcp://head:8786", dask().scheduler.address)
             command = command.replace("mpirun -n 64", "mpirun --allow-run-as-root --oversubscribe -n 3").replace("python3 ", sys.executable + " ")
-            done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
-            equal(done.returncode, 0, command + done.stderr)
-            files.add(("py" if "map.py" in command else "lua", pathlib.Path("map.csv").read_text().partition("\n")[2]))
-            os.remove("map.csv")
-        equal(len(files), 2)
-        self.assertIn("stops.svg", self.files())
+            with self.subTest(command):
+                done = subprocess.run(command, shell=True, capture_output=True, text=True, timeout=120)
+                equal(done.returncode, 0, done.stderr)
+                if "map.py" in command:
+                    rows.add(pathlib.Path("map.csv").read_text().partition("\n")[2])
+                else:
+                    self.assertIn("data: 300 points, 4 of them failed", done.stdout)
+                    equal(pathlib.Path("map.csv").read_bytes(), wanted)
+                os.remove("map.csv")
+        equal(len(rows), 1)
+        equal(self.files(), ["map.lua", "map.py", "stops.svg"])
+        pathlib.Path("map.lua").write_text("return 3")
+        self.assertIn("must return a table of the options of sweep", self.python("-m", "dinal.sweep", "map.lua").stderr)
 
 
 class Points(InAFolder):
