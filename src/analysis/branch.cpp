@@ -16,6 +16,7 @@ constexpr double straight = 0.9;      // least cosine of the angle between tange
 constexpr double corner_step = 1e-3;  // a step this short indicates a corner, such as the onset of stops
 constexpr double creeping = 1e-4;     // the walk ends after many steps this short
 constexpr int most_creeps = 40;
+constexpr int most_corners = 10;      // in a row: the walk is at the edge of a family, not of a curve
 constexpr double least_slope = 1e-7;  // least |dp/ds| beside a fold
 constexpr double upright = 1e-6;      // error of dp/ds; below it the branch is vertical
 constexpr double dying = 1e-2;        // smallest unit, relative to the greatest motion
@@ -189,6 +190,7 @@ private:
         Vector ahead;                       // tangent at `now`, in the direction of the walk
         double longest = first_step;        // limit of the next step
         int creeps = 0;                     // short steps since the last long one
+        int corners = 0;                    // corners rounded since the last step that was longer than one
         std::optional<Passed> passed = {};  // none after a corner
         bool recentred = false;             // whether `first` lies on a section that the walk has left
     };
@@ -215,14 +217,34 @@ private:
         return units_.cwiseInverse().asDiagonal() * slopes * columns.asDiagonal();
     }
 
-    /// The unit tangent of the curve in the direction of `before`.
-    Vector tangent(const Spot& spot, const Vector& before) const {
+    /// Scaled slopes below this are rounding.
+    static double noise_of(const Spot& spot) {
+        constexpr double of_derivatives = 1e-12, of_differences = 1e-7;
+        return spot.lap.derivative ? of_derivatives : of_differences;
+    }
+    /// The scaled slopes with rows of length 1; a row below the noise is 0.
+    Slopes normalised(const Spot& spot) const {
         Slopes slopes = scaled(spot.slopes);
-        for (Eigen::Index i = 0; i < slopes.rows(); ++i) slopes.row(i) /= std::max(slopes.row(i).norm(), 1e-300);
+        for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
+            const double size = slopes.row(i).norm();
+            slopes.row(i) /= size > noise_of(spot) ? size : model::never;
+        }
+        return slopes;
+    }
+    /// Returns whether fixed points form a surface here, as where a body may rest anywhere.
+    bool is_family(const Spot& spot) const {
+        return !(std::fabs(algebra::free_direction(normalised(spot)).last_pivot) > noise_of(spot));
+    }
+    /// The unit tangent of the curve in the direction of `before`; of a surface, the shortest way to other parameters.
+    Vector tangent(const Spot& spot, const Vector& before) const {
+        const Slopes slopes = normalised(spot);
         const algebra::FreeDirection free = algebra::free_direction(slopes);
         const Eigen::Index n = slopes.rows();
-        // If the mass may rest anywhere, fixed points form a surface: keep the place.
-        if (!(std::fabs(free.last_pivot) > 1e-12)) return across() * (before[n] < 0 ? -1 : 1);
+        if (!(std::fabs(free.last_pivot) > noise_of(spot))) {
+            Vector along(n + 1);
+            along << algebra::solve_by_singular_values(slopes.leftCols(n), -slopes.col(n), noise_of(spot)), 1;
+            return along.normalized() * (before[n] < 0 ? -1 : 1);
+        }
         const Vector& t = free.direction;
         return t * (t.dot(before) < 0 ? -1 : 1);
     }
@@ -252,13 +274,15 @@ private:
                 if (bend == Bend::lost) return path_;
                 if (bend == Bend::retry) continue;
             }
-            if (step.length > corner_step) orientation_ = orientation(spot->slopes, on);
+            if (step.length > corner_step) orientation_ = orientation(spot->slopes, on), walk.corners = 0;
             walk.creeps = step.length < creeping ? walk.creeps + 1 : 0;
             walk.longest = std::min(longest_step, 1.5 * walk.longest);
             find_motion(*spot);
             if (!circuit_.is_half() && becomes_symmetric(walk.now.motion, spot->motion)) return path_;
+            const bool moves = spot->motion.status == SteadyStatus::steady;
+            if (moves && is_family(*spot) != is_family(walk.now)) return path_;
             if (!add_step(walk, *spot, specials_of_step(walk, *spot, on, moved))) return ended(WalkEnd::range);
-            if (handle_met_point()) return path_;
+            if (handle_met_point() || repeats_a_fold()) return path_;
             if (is_closed(walk, *spot, on, step.length)) return ended(WalkEnd::closed);
             if (has_vanished(*spot)) return ended(WalkEnd::vanished);
             walk.passed = Passed{walk.now.x, slope_by_p(walk.ahead), walk.now.p};
@@ -302,7 +326,8 @@ private:
     Bend meet_bend(Progress& walk, double length, bool close) {
         const bool corner = close && length < corner_step;
         const bool stalls = length / 2 <= shortest_step || walk.creeps > most_creeps;
-        if ((corner || stalls) && round_corner(walk.now, walk.ahead, length)) {
+        if ((corner || stalls) && walk.corners < most_corners && round_corner(walk.now, walk.ahead, length)) {
+            ++walk.corners;
             walk.longest = first_step, walk.creeps = 0;
             walk.passed.reset();
             return Bend::retry;
@@ -349,6 +374,18 @@ private:
     bool is_closed(const Progress& walk, const Spot& spot, const Vector& on, double length) const {
         return !walk.recentred && path_.points.size() > 10 && (scaled(spot) - scaled(walk.first)).norm() < length &&
                on.dot(walk.first_ahead) > straight;
+    }
+
+    /// Returns whether the last fold was passed before: a corner, taken the wrong way, led the walk back onto its path.
+    bool repeats_a_fold() const {
+        const auto last =
+            std::ranges::find(path_.points.rbegin(), path_.points.rend(), BranchKind::fold, &BranchPoint::kind);
+        if (last == path_.points.rend()) return false;
+        constexpr double same = 1e-6;
+        return std::any_of(last + 1, path_.points.rend(), [&](const BranchPoint& point) {
+            return point.kind == BranchKind::fold && std::fabs(point.parameter - last->parameter) <= same * range_ &&
+                   std::fabs(point.motion.amplitude - last->motion.amplitude) <= same * last->motion.amplitude;
+        });
     }
 
     bool has_vanished(const Spot& spot) const {

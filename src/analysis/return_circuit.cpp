@@ -38,6 +38,7 @@ public:
             begin.y = vector_of(period->run.left->history->at(period->run.t_start));
         }
         begin.y = there_ = chart_->measured(begin.y);  // rotating bodies begin at 0, where angles are exact
+        held_ = held_in(motion);
         if (!cycles_) {
             first_ = returns(here, section_).place(there_);
             return;
@@ -99,6 +100,7 @@ public:
         motion.periods = periods_;
         motion.period = period_ = half_ ? 2 * lap.time : lap.time;
         note_family(motion);
+        if (!held_.empty()) motion.unique = false;
         constexpr int rows = 64;  // the range is read from them, and turns are searched between them
         auto period = std::make_shared<PeriodOfBodies>(PeriodOfBodies{*motion.by_returns.drive, {}});
         period->run = motion::completed(system, period->drive,
@@ -196,6 +198,23 @@ private:
         }
     };
 
+    /// The bodies that friction with the ground holds throughout the motion. They may stand at other places, too: with
+    /// their places as unknowns, the motions would form a surface instead of a curve.
+    std::vector<Eigen::Index> held_in(const SteadyMotion& motion) const {
+        if (stands_ || !motion.by_returns.of_bodies) return {};
+        const motion::Run& run = motion.by_returns.of_bodies->run;
+        const VectorXd range = reach_of(run, *chart_, 64).range().head(here_->runs.bodies());
+        // A body that creeps to the place where friction can hold it moves less and less.
+        constexpr double creep = 1e-6;
+        const auto& joints = here_->runs.system().joints;
+        std::vector<Eigen::Index> held;
+        for (std::size_t j = 0; j < joints.size(); ++j) {
+            const auto body = static_cast<Eigen::Index>(joints[j].first());
+            const bool sticks = joints[j].of.size() == 1 && run.left->carry->mode.holds(j);
+            if (sticks && !chart_->goes_round(body) && range[body] <= creep * range.maxCoeff()) held.push_back(body);
+        }
+        return held;
+    }
     /// The range of a measured number.
     std::pair<double, double> range_of(const SteadyMotion& motion, Eigen::Index measured) const {
         if (chart_->bodies() == 1 && measured == 0) return {motion.low, motion.high};
@@ -230,6 +249,7 @@ private:
                                                        : 1;
         const auto passed = cycles_ ? std::optional(section) : std::nullopt;
         Returns map(here.runs, *chart_, start(here), length, passed, VectorXd::Ones(there_.size()), there_);
+        map.hold(held_);
         if (half_) map.end_at_opposites();
         return map;
     }
@@ -245,6 +265,7 @@ private:
     Returns::Section section_;
     std::vector<std::vector<bool>> relays_;  // switch positions for each load
     VectorXd there_, growth_;
+    std::vector<Eigen::Index> held_;
     std::unique_ptr<Here> here_;
 };
 

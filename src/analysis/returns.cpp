@@ -313,6 +313,12 @@ Returns::Returns(Runs& runs, const Chart& chart, double start, double length, co
     if (section) passage_ = passage(chart, *section, runs.system().named);
 }
 
+void Returns::hold(const std::vector<Index>& bodies) {
+    held_ = bodies;
+    const Index n = runs_.bodies();
+    std::erase_if(own_, [&](Index k) { return k < 2 * n && std::ranges::find(held_, k % n) != held_.end(); });
+}
+
 VectorXd Returns::place(const VectorXd& y) const {
     return chart_.measured(y).cwiseQuotient(units_)(own_);
 }
@@ -404,7 +410,8 @@ void Returns::once(const FullState& from, Return& sum) {
     FullState at = Runs::at_stop(run);
     sum.mode = sign_ < 0 ? opposite(std::move(*at.mode)) : std::move(at.mode);
     sum.to = sign_ * place(at.y);
-    sum.finished = sum.to.allFinite();
+    sum.finished = sum.to.allFinite() &&
+                   std::ranges::all_of(held_, [&](Index body) { return sign_ * at.y[body] == there_[body]; });
 }
 
 Reach reach_of(const motion::Run& run, const Chart& chart, int looks) {

@@ -104,6 +104,9 @@ public:
     std::optional<Derivative> derivative(const Eigen::VectorXd& at, const std::optional<HeldMode>& mode, int returns,
                                          int order) override;
     double start() const { return start_; }
+    /// Takes the angles and velocities of these bodies from `there` instead of from a place; a return fails if one of
+    /// them moves.
+    void hold(const std::vector<Eigen::Index>& bodies);
     /// Makes each return end at the opposite of its last place, as after half a period of a symmetric motion.
     void end_at_opposites() { sign_ = -1; }
     /// The indices in y of the numbers of a place.
@@ -117,7 +120,8 @@ private:
     double start_, length_, sign_ = 1;
     std::optional<Section> section_;
     Eigen::VectorXd units_, there_;
-    std::vector<Eigen::Index> own_;  // indices in y of the numbers of a place
+    std::vector<Eigen::Index> own_;   // indices in y of the numbers of a place
+    std::vector<Eigen::Index> held_;  // bodies
     std::optional<model::WantedEvent> passage_;
 };
 

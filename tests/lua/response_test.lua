@@ -501,4 +501,25 @@ test("with Re > Rd a mass breaks away where M passes Re, and comes to rest elsew
     end
 end)
 
+test("a body that friction holds has no place on a branch, so the branch has no folds where it may stand elsewhere", function()
+    local rig = system {
+        bodies = {
+            a = { I = 1.1, k = 1.7, C = 0.03, Rd = 0.22, Re = 0.37 }, b = { I = 0.34, k = 0.75, C = 0.03 },
+            c = { I = 0.48, k = 3.5, C = 0.07, Rd = 0.55, Re = 0.56 },
+        },
+        links = { ab = { "a", "b", k = 2.3, C = 0.02 }, bc = { "b", "c", k = 0.7, C = 0.14 } },
+    }
+    local start = { theta0 = { a = 0.07, b = -0.17, c = -0.2 }, velocity0 = { a = 0.6, b = 1, c = -0.65 } }
+    local function at(p) return { M = { a = excitation.harmonic { omega = p.omega, amplitude = 0.6 } }, theta0 = start.theta0, velocity0 = start.velocity0 } end
+    local c = rig:response { over = { omega = vector.linspace(0.5, 0.95, 6) }, at = at }
+    equal(#c.points, 0)
+    equal(c["c.amplitude"]:max(), 0)
+    for i = 1, #c do
+        -- Where friction holds c makes no difference to a: each row is the motion of a rig in which c is a wall.
+        local wall = system { bodies = { a = { I = 1.1, k = 1.7, C = 0.03, Rd = 0.22, Re = 0.37 }, b = { I = 0.34, k = 0.75 + 0.7, C = 0.03 + 0.14 } }, links = { ab = { "a", "b", k = 2.3, C = 0.02 } } }
+        local s = wall:steady { M = { a = excitation.harmonic { omega = c.omega[i], amplitude = 0.6 } } }
+        near(c["a.amplitude"][i], s.a.amplitude, 1e-3)
+    end
+end)
+
 finish()
