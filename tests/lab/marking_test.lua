@@ -32,7 +32,7 @@ local function block(words)
   error("no block with " .. words)
 end
 
-test("a student gets one sentence for --lab-solutions, and so does an old file", function()
+test("--lab-solutions refuses a student, and an old file, with one sentence", function()
   local said = shell "dinal --lab-solutions 4711; echo $?"
   assert(said:find("^dinal: %-%-lab%-solutions is for instructors: it needs their file [^\n]*lab%-course.lua %(docs/lab/instructor.md%)\n1\n$"), said)
   shell "mkdir -p .config/dinal; echo old > .config/dinal/lab-course.lua"
@@ -40,7 +40,7 @@ test("a student gets one sentence for --lab-solutions, and so does an old file",
   assert(said:find("is not the course of this program: make it again", 1, true), said)
 end)
 
-test("the instructor's file is made as the handbook says, and all that --lab-solutions tells is right", function()
+test("the instructor's file is made as the handbook says, and all answers of --lab-solutions are right", function()
   equal(shell(block "lab-course.lua", source), "")
   lab.number(4711)
   local said = shell "dinal --lab-solutions 4711"

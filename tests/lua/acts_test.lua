@@ -210,7 +210,7 @@ test("an act at a jump or on a narrow peak of its event's function happens once 
     end
 end)
 
-test("an event whose function steps is told once at each step, by each integrator", function()
+test("an event whose function steps is reported once at each step, by each integrator", function()
     local sys = system { I = 1, k = 1, C = 0.05, Rd = 0.01 }
     local function over(t, theta) return theta + 0.1 * t > 0.2 and 1 or -1 end
     for _, by in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.01 }, integrator.dopri5 { tolerance = 1e-9 } } do
@@ -222,7 +222,7 @@ test("an event whose function steps is told once at each step, by each integrato
     end
 end)
 
-test("endless bounces by an action are called so also late, where M has the rounding of the time", function()
+test("endless bounces by an act are reported as such also late, where M is rounded with the time", function()
     for _, start in ipairs { 0, 1000, 1e5 } do
         local bounce = { when = function(_, theta) return theta end, direction = "down", act = function(_, theta, v) return theta, -0.6 * v end }
         local run = system { I = 1, k = 0 }

@@ -51,7 +51,7 @@ test("the greater of two saturated terms is not decided by their rounding again 
     end
 end)
 
-test("many conditions on the motion leave the conditions on time known", function()
+test("many conditions on the motion do not hide the conditions on time", function()
     local terms = {}
     for i = 1, 12 do terms[i] = ("if theta > %g then M = M + %g * math.sin(%g * t) end"):format(0.1 * i - 0.55, 0.1 * i, 0.3 * i) end
     local M = load("return function(t, theta) local M = 0 " .. table.concat(terms, " ") .. " return M + (t % 2 < 1 and 1 or -1) end")()

@@ -29,7 +29,7 @@ test("a free motion ends at rest, and the range of rest is known", function()
     near(nondimensional{}:steady{ theta0 = 0.5 }.period, 1, 1e-12) -- nothing damps it
 end)
 
-test("van der Pol's cycle has its known period and amplitude, from within and from without", function()
+test("van der Pol's cycle has its known period and amplitude, from starts inside and outside of it", function()
     for _, theta0 in ipairs{ 0.1, 4 } do
         local s = finds({ I = 1, k = 1 }, { M = function(_, theta, velocity) return (1 - theta ^ 2) * velocity end, theta0 = theta0 },
             { period = 6.6632868593231301897, amplitude = 2.0086198608748431, stops = 0, within = 1e-11 })
@@ -119,7 +119,7 @@ test("a periodic M may be combined with belt, base, states and acts", function()
     end
 end)
 
-test("a cycle and the rest beside it are reported as each other's only others", function()
+test("a limit cycle and the rest beside it are each reported as the only other motion beside the other", function()
     local sys = system{ I = 1, k = 4, C = 0.1, Rd = 0.3, Re = 0.6 }
     local squeal, slides = sys:steady{ belt = 0.2, theta0 = 0.15, velocity0 = 0.2 }, sys:steady{ belt = 0.2 }
     equal(squeal.status, "steady")

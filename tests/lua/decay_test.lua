@@ -114,7 +114,7 @@ test("a run continues when a state decays to denormal numbers", function()
     near(run:at(1000), 0, 1e-14)
 end)
 
-test("steady finds the rest to which a smooth motion dies out, whatever other starts fail", function()
+test("steady finds the rest to which a smooth motion dies out, even if other starts fail", function()
     -- A slider with rate and state friction (Erickson, Birnir and Lavallee 2008): by Routh and Hurwitz its rest is stable
     -- up to eps = 0.4975.
     local function slider(eps)
@@ -132,7 +132,7 @@ test("steady finds the rest to which a smooth motion dies out, whatever other st
     end
 end)
 
-test("a motion that is tiny against the numbers of its unread functions from the start follows the linear one", function()
+test("a motion far smaller than the numbers in its unread functions follows the linear motion", function()
     for i = 1, 40 do
         local k, c, size = between(0.3, 3), between(0.2, 2), between(1e-13, 1e-9)
         local spring, drag = one_of(shapes), one_of(shapes)

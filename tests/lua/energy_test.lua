@@ -47,7 +47,7 @@ test("energy prints as a small table", function()
     end
 end)
 
-test("each row of the table shows the number of the total", function()
+test("each row of the printed table shows the value of that name in total", function()
     local shaken = system { I = 1, k = 4, C = 0.2, Rd = 0.1, walls = { upper = 0.05, restitution = 0.5 } }
         :simulate { M = M, base = excitation.harmonic { omega = 1 }, belt = 0.3, t_end = 10 }:energy()
     local rows = 0
@@ -58,7 +58,7 @@ test("each row of the table shows the number of the total", function()
     equal(rows, 9)
 end)
 
-test("runs that have not kept their motion say what to do", function()
+test("the energy of a run without its motion is refused with a remedy", function()
     local rk4 = sys:simulate { M = M, t_end = 1, dt = 0.1, integrator = integrator.rk4 { h = 0.01 } }
     refused { { "rk4:energy()", "run:energy(): ", "integrator.exact and integrator.spectral" } }
     local sparse = sys:simulate { M = M, t_end = 1, dt = 0.1, dense = false }

@@ -39,7 +39,7 @@ test("the story of a function says how closely it was sampled, and never that no
     has_not(native:explain(), "seen", "formula")
 end)
 
-test("the story says once whether M was read, and which line was the reason where it was not", function()
+test("the story says once whether the formula of M was read, and otherwise which line prevented it", function()
     local sys = nondimensional { friction_ratio = 0.3 }
     local function run(task)
         task.t_end, task.dt = 10, 1
@@ -101,7 +101,7 @@ test("the torques of a support and a belt are part of the pull, and named", func
         "until t = 1, when the pull jumped so that |M - I a - k theta| = 1 > Re = 0.5, and it slipped backward.")
 end)
 
-test("outputs that are held, and relays of the motion, cannot hide a pulse", function()
+test("the story warns of a hidden pulse for a delayed comparison, but not for held outputs and relays", function()
     local sys = system { I = 1, k = 1, Rd = 0.1 }
     for M, hides in pairs {
         [excitation.sampled(function(_, theta) return -theta end, { every = 0.5 })] = false,
@@ -125,7 +125,7 @@ test("a belt under a body without dry friction is said to have no effect", funct
     has_not(told(smooth), "rubs", "smooth")
 end)
 
-test("each friction and spring has its words", function()
+test("the story describes each law of friction and each spring", function()
     local function story(own, options) return system(own):simulate(merged({ theta0 = 1, t_end = 3, M = math.sin }, options)) end
     says(story { I = 1, k = 0, C = 0.5 }, "The system is a block without a spring, with viscous damping C = 0.5 and no dry friction")
     says(story({ I = 1, k = 4, C = 0.5, units = { theta = "mm", M = "N" } }), "Units: theta in mm, M in N.")

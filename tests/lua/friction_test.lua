@@ -66,7 +66,7 @@ test("dinal1989 and the closed forms accept only Coulomb friction and the spring
     end
 end)
 
-test("with makes the same system except for the given changes", function()
+test("sys:with makes the same system except for the given changes", function()
     local sys = system { I = 2, k = 8, C = 0.5, Rd = 1, Re = 1.5 }
     equal(tostring(sys:with { I = 3 }), "system{ I = 3, k = 8, C = 0.5, Rd = 1, Re = 1.5 }")
     equal(tostring(sys:with { Rd = 1.2 }), "system{ I = 2, k = 8, C = 0.5, Rd = 1.2, Re = 1.5 }")
@@ -171,7 +171,7 @@ test("a law with a corner costs at most 380 values of M a half swing, at any spe
     end
 end)
 
-test("a law whose value at speed 0 is Re to rounding holds the given Re", function()
+test("a law may exceed the given Re by rounding, and its Re is then its value at speed 0", function()
     local law = friction.law(function(speed) return 0.1 + 0.2 * math.exp(-speed) end, { Re = 0.3 }) -- 0.1 + 0.2 > 0.3
     equal(law.Re, 0.1 + 0.2)
     refused { { "friction.law(function() return 0.3 + 1e-12 end, { Re = 0.3 })", "Re = 0.3 must be at least" } }
@@ -195,7 +195,7 @@ test("a contact that can hold nothing at rest slips under a torque that falls wi
     expect(pair({ I = 1 }, { I = 1 }, { Rd = 1, normal = 0 }), { M = { a = function(t, _, v) return t - v.a end }, t_end = 1 }, { status = "end", ["a.velocity"] = wanted, ["b.velocity"] = 0 })
 end)
 
-test("uneven breakaway holds alike under exact and spectral, with a table of M and without", function()
+test("a breakaway torque that differs each way holds alike under exact and spectral, also with M from a table", function()
     local uneven = system { I = 1, k = 1, friction = friction.asymmetric { forward = { Rd = 0.2, Re = 2 }, backward = { Rd = 0.1, Re = 1 } } }
     local t = vector.linspace(0, 20, 201)
     for _, M in ipairs { excitation.harmonic { amplitude = 0.5, omega = 1 }, excitation.samples { t = t, M = -1.5 * t:sin() } } do
@@ -206,7 +206,7 @@ test("uneven breakaway holds alike under exact and spectral, with a table of M a
     end
 end)
 
-test("friction that falls steeply with the speed stops a fast mass where its decay says", function()
+test("friction that falls steeply with the speed stops a fast mass where its decay predicts", function()
     -- Beyond speed 0, where stretches and steps look for the stop, such laws would grow without bound.
     local theta0, k, Rd = 1000, 100, 0.6
     local turn = math.pi / math.sqrt(k)
@@ -226,7 +226,7 @@ test("friction that falls steeply with the speed stops a fast mass where its dec
 end)
 
 -- Each period the mass slips a little less beyond its limit, until the rest is rounding.
-test("a mass that a pulse moves less each period comes to hold, alone and beside others", function()
+test("a mass that a pulse moves less each period finally sticks, alone and beside others", function()
     local T, M0 = 1.6661962663265, 0.9242939044131
     local M = function(t) return t % T < 0.37 * T and M0 or -M0 / 2 end
     local run = expect({ I = 2, k = 9, C = 0.35, friction = friction.stribeck{ Rd = 0.52, Re = 0.81, speed = 0.22 } }, { M = M, t_end = 400 * T }, { theta = (M0 - 0.81) / 9, within = 1e-15 })

@@ -89,7 +89,7 @@ test("numbers in a table that M uses are identified, and the table is restored; 
     found(fit, { ["spring.3"] = 0.8, C = 0.2 })
 end)
 
-test("exact data give errors of some ulps at least, and many records the coverage that the errors promise", function()
+test("exact data give errors of at least some ulps, and over many records the errors cover the true values as often as promised", function()
     local fit = identify { data = run, M = M, system = guess:with { I = 1 }, free = { "k", "C", "Rd" } }
     for name, value in pairs { k = 4, C = 0.1, Rd = 0.1 } do
         near(fit[name], value, 1e-6)

@@ -134,7 +134,7 @@ local short_decays = {
     { "creeps", { I = 1, k = 40, C = 20, Rd = 2 }, dt = 1/30, std = 0.01, silent = "Rd_over_k Re theta0 offset" },
 }
 
-test("a decay of one or two swings has errors as wide as its valley, and names the values it does not determine", function()
+test("a decay of one or two swings has errors as wide as the valley of its misfit, and names undetermined values", function()
     local judged, part, ratio = judge()
     for _, short in ipairs(short_decays) do
         local s = system(short[2])
@@ -338,7 +338,7 @@ test("a small misfit widens the errors by how far it moves the values", function
     assert(told > 6 and within / all > 0.85, told .. " " .. within .. " of " .. all)
 end)
 
-test("Re of a free decay lies between what holds the mass at rest and what would have held it a turn earlier", function()
+test("Re of a free decay lies between the torque that holds the mass at rest and the one that would have held it a turn earlier", function()
     local s = system{ I = 1, k = 40, C = 0.3, Rd = 0.8, Re = 1 }
     local run = s:simulate{ theta0 = 1, t_end = 12, dt = 0.02 }
     equal(run.outcome, "at rest")

@@ -53,7 +53,7 @@ test("dry friction and the jump of a spring or a load hold a mass together", fun
     }
 end)
 
-test("beside a rest a slider is its spring, a pressed elastic wall too, and an open contact is nothing", function()
+test("in the modes at a rest a slider and a pressed elastic wall are springs, and an open contact has no effect", function()
     local rows = { -- what the body has beside I and k, and its load, and the stiffness of all
         { { friction = { friction.jenkins { stiffness = 5, Rd = 1 }, friction.jenkins { stiffness = 2, Rd = 1 } } }, 0, 11 },
         { { walls = { lower = -0.5, upper = 0.5, stiffness = 12 } }, -8, 16 },

@@ -55,7 +55,7 @@ test("a jump of velocity is an impulse, and a moved body is infinitely heavy", f
         { ["ball.velocity"] = 2, ["bat.velocity"] = 1 })
 end)
 
-test("a moved body is written, changed and refused", function()
+test("a moved body has a text, can be changed, and is refused where it is impossible", function()
     local rig = system { bodies = { cam = { theta = 0.5, I = 1 }, a = { I = 1 } }, links = { s = { "a", "cam", k = 1 } } }
     has(tostring(rig), "cam = { I = 1, theta = ")
     says(rig:simulate { t_end = 1 }, "cam is moved by its angle, which takes torques from")

@@ -111,7 +111,7 @@ local function declared(gain)
 end
 local function last_of(run) return run.theta[#run.theta] end
 
-test("a memory that start makes is new in each run, and continues in a continued run", function()
+test("a memory made by start is new in each run, and continues in a continued run", function()
     for _, method in ipairs { integrator.spectral {}, integrator.rk4 { h = 0.005 } } do
         local function task(t_end, M) return { M = M, t_end = t_end, dt = 1, integrator = method } end
         local M = declared(6)

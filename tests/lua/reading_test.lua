@@ -261,7 +261,7 @@ local natives = {
     2 * excitation.harmonic { omega = 3 }:window(1, 2) + excitation.step { at = 5 } - 0.3,
 }
 
-test("an excitation inside a function is read with its bits, its breaks and its motion", function()
+test("an excitation inside a function is read, with the same bits, breaks and motion", function()
     local sys, own = system { I = 1, k = 4, C = 0.2, Rd = 0.1 }, { gain = 0.5 }
     for i, e in ipairs(natives) do
         own.e = e
@@ -574,7 +574,7 @@ test("a formula whose native terms would lose digits is integrated as a function
     near(run.M[11], f(run.t[11]), 5e-7)  -- to its own rounding
 end)
 
-test("code that was tampered with is read no further than it goes", function()
+test("bytecode that was tampered with is not read beyond its end", function()
     local dump = string.dump(function(t) return 2 * t + (t > 1 and 0.5 or 0) end)
     local seed = 11
     local function below(n)

@@ -257,7 +257,7 @@ test("a body that a load drives back to a place comes to rest right there", func
     end
 end)
 
-test("a body comes to rest at such a place also under a spring and other loads, and leaves when they overcome load and friction", function()
+test("a body comes to rest where a load drives it back also under a spring and other loads, and leaves when they overcome it", function()
     local D, Re, a = 1.2, 0.5, 0.6
     local own, g = { I = 1, k = 0.5, C = 0.1, Rd = 0.4, Re = Re }, passes(D, a)
     local function f(t) return 0.3 * math.sin(t) + (t > 20 and 0.5 * (t - 20) or 0) end
@@ -272,7 +272,7 @@ test("a body comes to rest at such a place also under a spring and other loads, 
     near(run:at(24.5), free:at(24.5), 1e-9)
 end)
 
-test("a body that starts at rest on such a place stays until it is pushed harder than load and friction together", function()
+test("a body that starts at rest where a load drives it back stays until it is pushed harder than load and friction together", function()
     for _, at_0 in ipairs { -1, 0, 1 } do -- it is pushed on by 1.5 - 1 - 0.3
         local M = function(t, theta) return (theta > 0.5 and -1 or theta < 0.5 and 1 or at_0) + (t > 3 and 1.5 or 0.2) end
         expect({ I = 1, k = 0, Rd = 0.3 }, { M = M, theta0 = 0.5, t_end = 4 }, { stick = 0, slip = { 3 }, theta = 0.6 })
@@ -303,12 +303,12 @@ test("the place to which a load drives a body back may move, and may be an angle
         { ["a.theta"] = one.theta, ["b.theta"] = one.theta - 0.4, within = 1e-10, parts = false })
 end)
 
-test("passages of such a place at growing intervals are followed", function()
+test("passages at growing intervals of a place to which a load drives a body back are followed", function()
     local run = expect(block, { M = function(_, theta, v) return (theta > 0 and -1 or 1) + 3 * v end, velocity0 = 1e-3, t_end = 6 }, { parts = false })
     assert(run.theta:abs():max() > 1e-3, run.theta:max())
 end)
 
-test("a body comes to rest at such a place under rk4, which samples loads", function()
+test("a body comes to rest where a load drives it back also under rk4, which samples loads", function()
     for _, M in ipairs { passes(1, 0.2), relay } do
         local task, sys = { M = M, theta0 = 1, t_end = 20 }, system { I = 1, k = 0.5, Rd = 0.3 }
         local truth = sys:simulate(task)
@@ -358,7 +358,7 @@ test("a belt that only touches velocity 0 carries on as one that hardly misses i
     near(turned(0).load.theta, turned(1e-7).load.theta, 1e-5)
 end)
 
-test("functions that jump at one surface have one share, in loads and in rates", function()
+test("functions that jump at one surface slide with one common weight, in loads and in rates", function()
     local function go(rate, start, z)
         expect(swing, { M = function(_, theta, v) return -3 * sgn(v + 2 * theta) end, states = { z = { start = start, rate = rate } },
             theta0 = 0.3, velocity0 = -0.6, t_end = 3 }, { z = z })
@@ -442,7 +442,7 @@ test("a mass that begins at rest on a jump that drives it back stays there, howe
     end
 end)
 
-test("friction stops a body at the step of a staircase, from which side it ever comes", function()
+test("friction stops a body at the step of a staircase, from whichever side it comes", function()
     for _, Rd in ipairs { 0.05, 0.2 } do
         for _, I in ipairs { 0.5, 2 } do
             local sys = system { I = I, k = 0, Rd = Rd, spring = function(x) return 2 * math.floor(x / 0.1) end }

@@ -28,7 +28,7 @@ test("a loaded run with names that are control sequences, its card, story and er
     end
 end)
 
-test("loaded data with such names, their rows, tables and errors are harmless", function()
+test("loaded data with names that are control sequences, their rows, tables and errors are harmless", function()
     local d = load(words)
     equal(#d, 2)
     harmless(tostring(d), "tostring")
@@ -39,7 +39,7 @@ test("loaded data with such names, their rows, tables and errors are harmless", 
     harmless(message, "field")
 end)
 
-test("events named so by the user are harmless, and their raw names can be read", function()
+test("events that the user names by control sequences are harmless, and their raw names can be read", function()
     local run = system{ I = 1, k = 1 }:simulate{ theta0 = 1, t_end = 3, dt = 1,
         events = { { when = function(t) return t - 1 end, name = "limit" .. evil } } }
     harmless(tostring(run.events), "events")

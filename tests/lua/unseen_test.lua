@@ -78,7 +78,7 @@ test("a narrow smooth pulse is found in every kind of function", function()
     end
 end)
 
-test("a sampled part of a delayed excitation or a relay, or an unread event, is the gap; what is sampled at instants is none", function()
+test("run.gap counts sampled parts of delayed excitations and relays, and unread events, but not functions called at instants", function()
     local function gap(M) return system(free):simulate { M = M, velocity0 = 1, t_end = 1, dt = .5 }.gap end
     local function narrow(t, theta, v) return exp(-((theta - .5) / 1e-6) ^ 2) end
     assert(gap(excitation.delayed(function(t, theta, v) return theta > .5 and theta < .6 and 1 or 0 end, { by = .01 })) > 0)
@@ -242,7 +242,7 @@ test("a pulse in a velocity window is followed although its formula has no bound
     end
 end)
 
-test("an unproven function is reported as the gap", function()
+test("an unproven function is reported in run.gap", function()
     local S = system { I = 1, k = 4, C = .2 }
     local function gap(M, o)
         o = o or {}
@@ -309,7 +309,7 @@ test("a narrow dip of the law that holds a mass lets it slip", function()
     end
 end)
 
-test("an event in one direction is not told of a peak in the other one, also where a stretch is tried again", function()
+test("an event in one direction ignores a peak in the other one, also where a stretch is repeated", function()
     for _, w in ipairs { 1e-2, 7.1e-4, 1e-6 } do
         for direction, side in pairs { up = 1, down = -1 } do
             local p = .92874850474157
