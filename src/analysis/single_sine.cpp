@@ -7,6 +7,7 @@
 
 #include "analysis/forced_search.hpp"
 #include "model/lowered.hpp"
+#include "motion/complex_product.hpp"
 #include "theory/forced.hpp"
 
 namespace dinal::analysis {
@@ -37,10 +38,8 @@ std::optional<SingleSine> single_sine(const SteadyQuestion& question) {
 
 namespace {
 
-/// The product of finite numbers, without checks for infinities.
-std::complex<double> product(std::complex<double> a, std::complex<double> b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
+using motion::product;
+
 std::complex<double> phasor(double angle) {
     return {std::cos(angle), std::sin(angle)};
 }

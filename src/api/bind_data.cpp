@@ -609,15 +609,11 @@ namespace {
 
 constexpr int vermilion = 2;  // colour that is visible on both dark and bright shades
 
-/// Returns whether the value can be drawn on the axis.
-bool is_drawn(double value, bool logarithmic) {
-    return std::fabs(value) <= 1e300 && (value > 0 || !logarithmic);
-}
-
 /// The distinct values, increasing.
 std::vector<double> different_values(std::span<const double> all, bool logarithmic) {
     std::vector<double> values;
-    std::ranges::copy_if(all, std::back_inserter(values), [logarithmic](double v) { return is_drawn(v, logarithmic); });
+    std::ranges::copy_if(all, std::back_inserter(values),
+                         [logarithmic](double v) { return plots::drawable(v, logarithmic); });
     std::ranges::sort(values);
     values.erase(std::unique(values.begin(), values.end()), values.end());
     return values;
@@ -644,7 +640,7 @@ plots::Shades shades_of(const lua::Options& options, const std::array<std::strin
     shades.z.assign(shades.x.size() * shades.y.size(), std::numeric_limits<double>::quiet_NaN());
     std::vector<bool> filled(shades.z.size());
     for (std::size_t row = 0; row < z.size(); ++row) {
-        if (!is_drawn(x[row], xlog) || !is_drawn(y[row], ylog)) continue;
+        if (!plots::drawable(x[row], xlog) || !plots::drawable(y[row], ylog)) continue;
         const std::size_t place = place_among(shades.y, y[row]) * shades.x.size() + place_among(shades.x, x[row]);
         if (filled[place]) {
             options.fail("z",

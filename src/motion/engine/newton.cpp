@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/complex_product.hpp"
+
 namespace dinal::motion::engine {
 
 namespace {
@@ -15,11 +17,6 @@ constexpr std::size_t most_factors = 24;
 constexpr Eigen::Index few_unknowns = 8;    // with so few unknowns matrices are dense, even for a chain
 constexpr Eigen::Index many_unknowns = 64;  // with so many unknowns even wide bands are not inverted
 using Complex = std::complex<double>;
-
-/// The product without the standard's checks for infinities.
-Complex product(Complex a, Complex b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
 
 /// Solves with the LU factors of a banded matrix; the diagonal holds the inverse pivots.
 void solve_band(const Complex* rows, Eigen::Index size, Eigen::Index band, Complex* x) {
