@@ -47,7 +47,7 @@ std::optional<model::EventKind> event_of(const Before& before, Motion way);
 
 struct Verdict {
     Motion way;  ///< new direction; stuck: it sticks, or creeps on
-    std::optional<model::EventKind> told = {};
+    std::optional<model::EventKind> event = {};
     bool creeps = false;
 };
 /// Decides the next state of one contact. A creep whose pull reverses ends in a stick.

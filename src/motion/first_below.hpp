@@ -19,7 +19,7 @@ public:
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope) : Bounded(sign, f, slope, {}) {
         at_nodes_ = chebyshev::at_nodes(f_);
     }
-    /// The same with known values of f at the nodes.
+    /// Uses these values of f at the nodes instead of computing them.
     Bounded(double sign, const Series<n>& f, const Series<n - 1>& slope, const Samples& at_nodes)
         : f_(f), slope_(slope), at_nodes_(at_nodes) {
         for (double& c : f_) c *= sign;
@@ -54,7 +54,7 @@ public:
     }
     const Samples& at_nodes() const { return at_nodes_; }
     /// The distance from -1 up to which a curve that leaves zero there is certainly positive: by its slope, or if that
-    /// is zero, too, by its curvature. 0 if neither decides.
+    /// is also zero, by its curvature. 0 if neither decides.
     double leaves_upward() const {
         double at_left = 0, bend = 0;
         for (std::size_t k = 0; k + 1 < n; ++k) at_left += k % 2 == 0 ? slope_[k] : -slope_[k];

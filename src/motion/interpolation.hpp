@@ -76,7 +76,7 @@ std::pair<double, double> first_positive(F&& f, double a, double fa, double b, d
 
 /// The first time x in (0, h] at which a velocity in `direction` (+1, -1) reaches zero, by the cubic through velocity
 /// and acceleration at both ends. A velocity of exactly 0 at the beginning does not count, but 0 is returned if the
-/// velocity leaves it in the wrong direction. None if the cubic stays on its side.
+/// velocity leaves it in the wrong direction. None if the cubic never reaches zero.
 std::optional<double> first_velocity_zero(double direction, double h, double v0, double a0, double v1, double a1);
 
 }  // namespace dinal::motion

@@ -78,21 +78,21 @@ double LoneContact::place_at_stop(const Standstill& now) const {
 bool LoneContact::decide(const Standstill& now) {
     const model::Motion before = motion_;
     torques_before_ = torques(now);
-    const auto [way, told, creeps] = contact::decide({.slid = before}, pull_of(now.M, now.theta));
+    const auto [way, event, creeps] = contact::decide({.slid = before}, pull_of(now.M, now.theta));
     motion_ = way;
     phase_ = way == model::Motion::stuck ? Phase::stuck : Phase::leaving;
     came_ = before, M_stuck_ = now.M;
     if (at_start(now.t)) {
         began_stuck_ = stuck();
-    } else if (told) {
-        record_event(*told, now);
+    } else if (event) {
+        record_event(*event, now);
     }
     return goes_on_after(now.t);
 }
 
 bool LoneContact::release(const Standstill& now, model::Motion towards) {
     const model::Motion crept = phase_ == Phase::creeping ? motion_ : model::Motion::stuck;
-    const auto [way, told, creeps] =
+    const auto [way, event, creeps] =
         contact::decide({.held = crept == model::Motion::stuck, .creeps = crept}, {model::never, towards});
     if (way == model::Motion::stuck) {
         stick(now);
@@ -100,8 +100,8 @@ bool LoneContact::release(const Standstill& now, model::Motion towards) {
     }
     motion_ = way;
     phase_ = Phase::leaving;
-    if (told && events_ != nullptr) {
-        const model::Event slip{now.t, *told, now.theta, now.M};
+    if (event && events_ != nullptr) {
+        const model::Event slip{now.t, *event, now.theta, now.M};
         if (!contact::only_touched(*events_, {slip, came_, way, std::fabs(now.M - M_stuck_), torques(now)}, pace_))
             events_->push_back(slip);
     }
@@ -133,7 +133,7 @@ bool LoneContact::failed_to_leave(const Standstill& now) {
     return goes_on_after(now.t);
 }
 
-void LoneContact::go_on() {
+void LoneContact::note_time_passed() {
     if (phase_ == Phase::leaving) phase_ = Phase::moving;
     if (phase_ == Phase::held) phase_ = Phase::stuck;
 }

@@ -86,8 +86,7 @@ public:
     /// Returns to sticking after a release without motion: M only touched the limit.
     bool failed_to_leave(const Standstill& now);
 
-    /// Reports that time has passed, in motion or at rest.
-    void go_on();
+    void note_time_passed();
     /// Without dry friction: sets the direction, without an event.
     void set_direction(model::Motion motion) { motion_ = motion; }
     /// Without dry friction: reverses, and records the turn.

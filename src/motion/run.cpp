@@ -44,9 +44,9 @@ Growing<model::Event> Run::events_once() const {
     const auto first = std::ranges::find_if(events, [](const model::Event& e) { return e.user >= 0; });
     const auto repeats = [&](const model::Event& e) { return e.user >= 0 && e.where != first->where; };
     if (std::none_of(first, events.end(), repeats)) return events;
-    std::vector<model::Event> told;
-    std::copy_if(events.begin(), events.end(), std::back_inserter(told), std::not_fn(repeats));
-    return Growing<model::Event>(std::move(told));
+    std::vector<model::Event> distinct;
+    std::copy_if(events.begin(), events.end(), std::back_inserter(distinct), std::not_fn(repeats));
+    return Growing<model::Event>(std::move(distinct));
 }
 
 text::Expected<model::State> between_rows(const Run& run, double t) {

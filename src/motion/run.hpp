@@ -74,7 +74,7 @@ struct Run {
     double t_start = 0;
     double t_stop = 0;  ///< the time reached: t_end unless the run ended early
     double gap = 0;  ///< longest distance between two samples of a function M, time units; 0 if M declares its breaks
-    double unproven = 0;    ///< longest interval in which formulas could not be proven to do no more than sampled
+    double unproven = 0;    ///< longest interval in which formulas were not proven to follow their samples
     double noise = 0;       ///< torque by which M deviates from a smooth function on every scale
     std::size_t jumps = 0;  ///< located jumps of a function M along the motion
     bool located = false;   ///< whether formulas have conditions on the motion, which were located

@@ -92,7 +92,7 @@ struct Problem {
     const Limits& limits;
     std::optional<model::Motion> before = {};  ///< motion at the end of the run that is continued
     std::size_t course_bytes = 0;              ///< memory limit of the course
-    bool more = false;                   ///< whether there are walls, controllers, or a drive beside M such as a belt
+    bool more = false;  ///< whether there are walls, controllers, or a drive in addition to M, such as a belt
     const engine::Left* left = nullptr;  ///< state at the end of the run that is continued
 };
 

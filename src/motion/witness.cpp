@@ -42,9 +42,9 @@ void Witness::keep(std::size_t place, const Answer& answer, std::span<const doub
 
 /// Keeps every fourth answer; older answers are sparser.
 void Witness::keep_for_later(const Answer& answer, std::span<const double> states) {
-    if (asked_ == 1) keep(first_place, answer, states);
-    if (asked_ % 4 != 0) return;
-    const std::uint64_t n = asked_ / 4;
+    if (evaluations_ == 1) keep(first_place, answer, states);
+    if (evaluations_ % 4 != 0) return;
+    const std::uint64_t n = evaluations_ / 4;
     const auto age = std::min(static_cast<std::size_t>(std::countr_zero(n)), ages - 1);
     keep(2 * age + static_cast<std::size_t>(n >> (age + 1) & 1U), answer, states);
 }
@@ -86,10 +86,10 @@ bool Witness::repeats_answer(std::size_t place) {
 
 /// Repeats an evaluation, each time of a different age.
 bool Witness::repeat_one() {
-    next_ = asked_ + questions_between;
-    for (std::size_t i = 0; i < asked_in_turn; ++i) {
-        constexpr std::size_t stride = 7;  // coprime to asked_in_turn = 45
-        turn_ = (turn_ + stride) % asked_in_turn;
+    next_ = evaluations_ + questions_between;
+    for (std::size_t i = 0; i < places_in_turn; ++i) {
+        constexpr std::size_t stride = 7;  // coprime to places_in_turn = 45
+        turn_ = (turn_ + stride) % places_in_turn;
         if ((known_ >> turn_ & 1U) != 0) return repeats_answer(turn_);
     }
     return true;
@@ -97,13 +97,13 @@ bool Witness::repeat_one() {
 
 /// Records an answer and repeats doubtful evaluations. Returns false if the function contradicted itself.
 bool Witness::record(const Answer& answer, std::span<const double> states) {
-    ++asked_;
+    ++evaluations_;
     bool jumped = false;
-    if (asked_ >= first_again && answer.t >= answers_[last_].t) {
+    if (evaluations_ >= first_again && answer.t >= answers_[last_].t) {
         const double change = std::fabs(answer.value - answers_[last_].value);
         if (change > jump_factor * usual_) {
             std::swap(last_, before_jump_);
-            jumped = jumps_asked_ * questions_a_jump <= asked_;
+            jumped = jumps_repeated_ * questions_a_jump <= evaluations_;
         }
         usual_ += (change - usual_) / 16;
     }
@@ -111,7 +111,7 @@ bool Witness::record(const Answer& answer, std::span<const double> states) {
     keep_for_later(answer, states);
     if (answer.t > latest_) keep_milestone(answer, states);
     if (!jumped) return true;
-    ++jumps_asked_;
+    ++jumps_repeated_;
     // A relay in a closure no longer returns its value from before the switch, and random numbers do not repeat.
     return repeats_answer(before_jump_) && repeats_answer(last_);
 }
@@ -119,7 +119,7 @@ bool Witness::record(const Answer& answer, std::span<const double> states) {
 double Witness::value_with(double t, const model::State& state, std::span<const double> states) {
     if (testimony_->over) return function_->value_with(t, state, states);
     // The repetition comes first, so that side effects that others see are those of the latest call.
-    if (testimony_->found || (asked_ >= next_ && !repeat_one())) return no_number;
+    if (testimony_->found || (evaluations_ >= next_ && !repeat_one())) return no_number;
     const double value = function_->value_with(t, state, states);
     if (!std::isfinite(value)) return value;
     return record({t, state, value}, states) ? value : no_number;
@@ -131,7 +131,7 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
         const std::size_t good = function_->fill(times, out);
         if (good < times.size()) return good;
         std::size_t i = 0;
-        while (i < good && record({times[i], {}, out[i]}, {}) && (asked_ < next_ || repeat_one())) ++i;
+        while (i < good && record({times[i], {}, out[i]}, {}) && (evaluations_ < next_ || repeat_one())) ++i;
         if (i == good) return good;
     }
     out[0] = no_number;
@@ -141,16 +141,16 @@ std::size_t Witness::fill(std::span<const double> times, std::span<double> out) 
 /// Repeats kept evaluations after all other functions have run, because those may have changed variables that this one
 /// reads.
 void Witness::repeat_kept() {
-    if (asked_ < 2 || testimony_->found || !repeats_answer(first_place)) return;
-    for (std::size_t place = first_milestone; place < asked_in_turn; ++place) {
+    if (evaluations_ < 2 || testimony_->found || !repeats_answer(first_place)) return;
+    for (std::size_t place = first_milestone; place < places_in_turn; ++place) {
         if ((known_ >> place & 1U) != 0 && !repeats_answer(place)) return;
     }
 }
 
 bool Witness::repeat_end(bool last) {
-    if (asked_ < 2 || testimony_->found) return !testimony_->found;
+    if (evaluations_ < 2 || testimony_->found) return !testimony_->found;
     std::size_t place = first_place;
-    for (std::size_t later = first_milestone; last && later < asked_in_turn; ++later) {
+    for (std::size_t later = first_milestone; last && later < places_in_turn; ++later) {
         if ((known_ >> later & 1U) != 0) place = later;
     }
     return repeats_answer(place);

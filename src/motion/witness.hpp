@@ -53,7 +53,7 @@ public:
     bool may_go_on() override { return !testimony_->found && function_->may_go_on(); }
     void forget_failure() override { function_->forget_failure(); }
 
-    /// Repeats the first evaluation at the end of the run.
+    /// Repeats the kept first evaluation and the milestones at the end of the run.
     void repeat_kept();
     /// Repeats the first kept evaluation, or if `last` the latest one. Returns false if the answer differs.
     bool repeat_end(bool last);
@@ -70,7 +70,7 @@ private:
     // The places: two for each age; the very first answer; milestones; the last one and the one before a jump, which
     // swap.
     static constexpr std::size_t first_place = 2 * ages, first_milestone = first_place + 1,
-                                 asked_in_turn = first_milestone + milestones, places = asked_in_turn + 2;
+                                 places_in_turn = first_milestone + milestones, places = places_in_turn + 2;
 
     void keep(std::size_t place, const Answer& answer, std::span<const double> states);
     void keep_for_later(const Answer& answer, std::span<const double> states);
@@ -84,9 +84,10 @@ private:
     std::string name_;
     const char* argument_;
 
-    std::uint64_t asked_ = 0, next_ = 0;  ///< evaluations so far, and the count at which the next repetition is due
-    std::uint64_t jumps_asked_ = 0;       ///< jumps that caused two repetitions
-    std::size_t turn_ = 0, last_ = asked_in_turn, before_jump_ = asked_in_turn + 1;
+    std::uint64_t evaluations_ = 0,
+                  next_ = 0;            ///< evaluations so far, and the count at which the next repetition is due
+    std::uint64_t jumps_repeated_ = 0;  ///< jumps that caused two repetitions
+    std::size_t turn_ = 0, last_ = places_in_turn, before_jump_ = places_in_turn + 1;
     double latest_ = -model::never;  ///< latest time of an evaluation
     /// number of evaluations later than all before; their number between two milestones
     std::uint64_t ahead_ = 0, way_ = 1;

@@ -27,10 +27,10 @@ TEST_CASE("a creep continues in balance, becomes a slip without an event, and st
     CHECK(after(-0.5).creeps);
     const Verdict speeds_up = after(-0.6);
     CHECK(speeds_up.way == Motion::backward);
-    CHECK_FALSE(speeds_up.told);
+    CHECK_FALSE(speeds_up.event);
     const Verdict sticks = after(-0.4);
     CHECK(sticks.way == Motion::stuck);
-    CHECK(sticks.told == EventKind::stick);
+    CHECK(sticks.event == EventKind::stick);
 }
 
 }  // namespace dinal::contact_test

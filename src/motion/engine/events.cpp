@@ -233,8 +233,8 @@ void Engine::restart_contact(std::size_t j, Because why, std::size_t at, double 
     const bool held = how.way == Motion::stuck || how.riding;
     how.leaving = false;
     if (held || how.way != way) {
-        const bool told = why == Because::belt ? begun() : why == Because::impact && j != at;
-        if (held && told) report_event(EventKind::slip, j);
+        const bool reports = why == Because::belt ? begun() : why == Because::impact && j != at;
+        if (held && reports) report_event(EventKind::slip, j);
         if (!held && why == Because::belt) report_event(EventKind::turn, j);
         contacts_.slide(mechanics_, now_, j, way, false);
     } else if (const model::Friction& law = problem_.system.joints[j].friction.law; law.ranges() > 0) {

@@ -40,11 +40,12 @@ void Recorder::report_user_event(const Now& now, std::size_t event) {
     }
 }
 
-void Recorder::report_event(const Reported& told) {
+void Recorder::report_event(const Reported& reported) {
     constexpr double clearly_later = 1e-3;
-    const Event& event = told.event;
-    if (told.holds_again && withdraw(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
-    if (contact::only_touched(recent_, {event, told.slid, told.way, told.off, told.size}, unit_)) return;
+    const Event& event = reported.event;
+    if (reported.holds_again && withdraw(EventKind::slip, static_cast<std::size_t>(event.where), event.t)) return;
+    if (contact::only_touched(recent_, {event, reported.slid, reported.way, reported.off, reported.size}, unit_))
+        return;
     if (!recent_.empty() && event.t - recent_.back().t > clearly_later * unit_) write_recent();
     recent_.push_back(event);
 }
@@ -66,11 +67,11 @@ void Recorder::report_slide(const Now& now, const SlideChange& change) {
 
 /// Withdraws an event of this kind at this time. Returns whether there was one.
 bool Recorder::withdraw(EventKind kind, std::size_t joint, double t) {
-    const auto told = std::find_if(recent_.rbegin(), recent_.rend(), [&](const Event& e) {
+    const auto found = std::find_if(recent_.rbegin(), recent_.rend(), [&](const Event& e) {
         return e.where == static_cast<int>(joint) && e.kind == kind && e.t == t;
     });
-    if (told == recent_.rend()) return false;
-    recent_.erase(std::next(told).base());
+    if (found == recent_.rend()) return false;
+    recent_.erase(std::next(found).base());
     return true;
 }
 

@@ -27,7 +27,7 @@ public:
     // Events. Recent events are held back, because later ones may withdraw them: a released joint does not move, a
     // slide ends at once, a stick is shorter than rounding, or the run gets stuck. They are written when a clearly
     // later event arrives.
-    void report_event(const Reported& told);
+    void report_event(const Reported& reported);
     void report_event(const Now& now, model::EventKind kind, std::size_t where, int user = -1) {
         report_event({.event = event_at(mechanics_, now, kind, where, user)});
     }

@@ -236,16 +236,16 @@ Series StretchProof::time(double delay) const {
 bool StretchProof::give_motion(const model::Formula& formula, const Series* speed, const std::vector<Series>* past) {
     const auto of = [&](std::size_t k) { return past != nullptr ? (*past)[k] : whole(k); };
     const bool named = mechanics_.system().named;
-    const std::size_t told = 2 * n_ + mechanics_.states_of_user();
+    const std::size_t values = 2 * n_ + mechanics_.states_of_user();
     if (formula.takes_motion() && !named) unseen_.give(1, of(0)), unseen_.give(2, of(n_));
     const std::size_t count = formula.state_count(), from = named ? 0 : 2, more = speed != nullptr ? 1 : 0;
     if (count == 0) return true;
-    if (count != told - from + more) {
+    if (count != values - from + more) {
         s_.proven = false;
         return false;
     }
     if (speed != nullptr) unseen_.give(formula.first_state(), *speed);
-    for (std::size_t k = from; k < told; ++k) unseen_.give(formula.first_state() + more + k - from, of(k));
+    for (std::size_t k = from; k < values; ++k) unseen_.give(formula.first_state() + more + k - from, of(k));
     return true;
 }
 
@@ -423,7 +423,7 @@ double Proofs::rounding_at(std::size_t node, const Segment& s, model::Formula& f
                            const model::terms::Piece* piece, double first, const double* speed) {
     const std::size_t n = mechanics_.bodies();
     const bool named = mechanics_.system().named;
-    const std::size_t told = 2 * n + mechanics_.states_of_user(), from = named ? 0 : 2;
+    const std::size_t values = 2 * n + mechanics_.states_of_user(), from = named ? 0 : 2;
     const auto constant = [](double x) { return Series{x}; };
     unseen_.begin(formula, piece);
     unseen_.give(0, constant(first));
@@ -433,7 +433,7 @@ double Proofs::rounding_at(std::size_t node, const Segment& s, model::Formula& f
     std::size_t place = formula.first_state();
     const std::size_t behind = place + formula.state_count();
     if (speed != nullptr && place < behind) unseen_.give(place++, constant(*speed));
-    for (std::size_t i = from; i < told && place < behind; ++i) unseen_.give(place++, constant(s.y[i][node]));
+    for (std::size_t i = from; i < values && place < behind; ++i) unseen_.give(place++, constant(s.y[i][node]));
     const double rounded = unseen_.rounded();
     return std::isfinite(rounded) ? rounded : 0;
 }

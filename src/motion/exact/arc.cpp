@@ -78,8 +78,8 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
         const Complex F{in_phase, quadrature};
         if (to.resonant) {
             // F (g(mu, lambda) - g(mu, conj lambda)) / (2 i w1 I), where only the first is near resonance.
-            const Complex root = free_.root(), growing = times(F, to.gain), turning = times(growing, to.other_gain);
-            const Complex up = times(growing, root);
+            const Complex root = free_.root(), growing = product(F, to.gain), turning = product(growing, to.other_gain);
+            const Complex up = product(growing, root);
             const Complex held{growing.real() - omega * turning.imag(), growing.imag() + omega * turning.real()};
             const double size = length_of(up), square = omega * omega;
             velocity_.add_resonance(
@@ -89,7 +89,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
                  .turning = held,
                  .way_growing = growing,
                  .way_turning = turning,
-                 .slope_growing = times(up, root),
+                 .slope_growing = product(up, root),
                  .slope_turning = {up.real() - omega * held.imag(), up.imag() + omega * held.real()},
                  .fourth_growing = size * to.fourth_growing,
                  .fourth_turning = size * to.fourth_turning + length_of(held) * (square * square)});
@@ -97,7 +97,7 @@ bool Arc::begin_closed(const model::ClosedForm& M, const Start& start, double le
             velocity -= turning.imag() * root.real() - turning.real() * root.imag();  // Im(turning conj lambda)
             continue;
         }
-        const Complex way = times(F, to.gain);
+        const Complex way = product(F, to.gain);
         velocity_.add_sine(omega, {-omega * way.imag(), omega * way.real()});
         theta -= way.imag();
         velocity -= omega * way.real();
@@ -212,7 +212,7 @@ public:
         : kept_(kept), damping_(system.damping()), braking_(system.braking(kept.motion)), arc_(system) {
         if (kept.rests) return;
         model::closed_form(excitation, kept.start.hi, kept.start.lo, M_);
-        arc_.begin(M_, {kept.begin.velocity, kept.pull}, kept.asked);
+        arc_.begin(M_, {kept.begin.velocity, kept.pull}, kept.requested);
         const double fastest = std::max(arc_.free().fastest(), M_.fastest());
         const double count = std::ceil(fastest * kept.length / stretch_radians);
         constexpr double most = 1e6;
@@ -282,7 +282,7 @@ text::Expected<model::State> Arcs::at(double t) const {
     Arc arc(lowered);
     model::ClosedForm M;
     model::closed_form(excitation_, kept.start.hi, kept.start.lo, M);
-    arc.begin(M, {kept.begin.velocity, kept.pull}, kept.asked);
+    arc.begin(M, {kept.begin.velocity, kept.pull}, kept.requested);
     const Arc::Point y = arc.at(tau);
     return model::State{Clock{kept.begin.theta, kept.theta_rest}.later(y.way).hi, y.velocity};
 }

@@ -69,7 +69,7 @@ private:
 struct KeptArc {
     Clock start;
     double length = 0;
-    double asked = 0;  ///< requested length, which affects the choice of the closed form
+    double requested = 0;  ///< requested length, which affects the choice of the closed form
     model::State begin;
     double theta_rest = 0;  ///< rounding error of theta at the start
     double pull = 0;        ///< M - k theta minus the braking of friction, at the start

@@ -113,7 +113,7 @@ void WalkedCurve::make_turn(double tau, Turn& to) {
         std::array<Complex, 2>* turned = table_.resonance_rows.data() + to.row * sum_.resonances.size();
         for (std::size_t j = 0; j < sum_.resonances.size(); ++j) {
             const Complex difference = sum_.resonances[j].difference(tau, to.root);
-            turned[j] = {difference, to.root + times(sum_.resonances[j].from_root, difference)};
+            turned[j] = {difference, to.root + product(sum_.resonances[j].from_root, difference)};
         }
         step = free_.step(to.root);
     } else if (table_.has_free) {
@@ -138,7 +138,7 @@ void WalkedCurve::turn_others(const PartValues& from, const Turn& by, PartValues
     for (std::size_t j = 0; j < sum_.resonances.size(); ++j) {
         const auto& [g, u] = from.resonances[j];
         const auto& [difference, turned] = resonance[j];
-        const Complex to_g = times(by.root, g) + times(u, difference), to_u = times(u, turned);
+        const Complex to_g = product(by.root, g) + product(u, difference), to_u = product(u, turned);
         to.resonances[j] = {to_g, to_u};
         const Resonance& part = sum_.resonances[j];
         y.f += imaginary(part.growing, to_g, part.turning, to_u);
@@ -147,97 +147,98 @@ void WalkedCurve::turn_others(const PartValues& from, const Turn& by, PartValues
 }
 
 const WalkedCurve::Jet& WalkedCurve::derive(const Value& y) {
-    const PartValues& asked = *asked_.values;
+    const PartValues& point = *last_point_.values;
     double second = 0, third = 0;
     for (std::size_t j = 0; j < sum_.sines; ++j) {
-        const Complex z = asked.sines[j];
+        const Complex z = point.sines[j];
         const double omega = sum_.omega[j], square = omega * omega;
         second -= square * z.imag();
         third -= square * (omega * z.real());
     }
     if (sum_.has_free) {
-        const FreeParts bend = free_.derivative(free_.derivative(asked.free));
+        const FreeParts bend = free_.derivative(free_.derivative(point.free));
         second += free_.velocity(bend);
         third += free_.acceleration(bend);
     }
-    asked_.jet[0] = y.f, asked_.jet[1] = y.slope, asked_.jet[2] = second / 2, asked_.jet[3] = third * over_factorial[3];
-    asked_.jet_size = 4;
+    last_point_.jet[0] = y.f, last_point_.jet[1] = y.slope, last_point_.jet[2] = second / 2,
+    last_point_.jet[3] = third * over_factorial[3];
+    last_point_.jet_size = 4;
     if (!only_swings_) derive_others(2, 3);
-    return asked_.jet;
+    return last_point_.jet;
 }
 
 const WalkedCurve::Jet& WalkedCurve::further_jet() {
-    const PartValues& asked = *asked_.values;
+    const PartValues& point = *last_point_.values;
     constexpr std::size_t first = 4;
-    for (std::size_t i = first; i <= jet_order; ++i) asked_.jet[i] = 0;
+    for (std::size_t i = first; i <= jet_order; ++i) last_point_.jet[i] = 0;
     for (std::size_t j = 0; j < sum_.sines; ++j) {
-        const Complex z = asked.sines[j];
+        const Complex z = point.sines[j];
         const double square = sum_.omega[j] * sum_.omega[j], fourth = square * square;
-        asked_.jet[4] += fourth * z.imag();
-        asked_.jet[5] += fourth * (sum_.omega[j] * z.real());
-        asked_.jet[6] -= fourth * (square * z.imag());
+        last_point_.jet[4] += fourth * z.imag();
+        last_point_.jet[5] += fourth * (sum_.omega[j] * z.real());
+        last_point_.jet[6] -= fourth * (square * z.imag());
     }
     if (sum_.has_free) {
-        FreeParts y = asked.free;
+        FreeParts y = point.free;
         for (std::size_t i = 1; i <= jet_order; ++i) {
             y = free_.derivative(y);
-            if (i >= first) asked_.jet[i] += free_.velocity(y);
+            if (i >= first) last_point_.jet[i] += free_.velocity(y);
         }
     }
-    for (std::size_t i = first; i <= jet_order; ++i) asked_.jet[i] *= over_factorial[i];
-    asked_.jet_size = jet_order + 1;
+    for (std::size_t i = first; i <= jet_order; ++i) last_point_.jet[i] *= over_factorial[i];
+    last_point_.jet_size = jet_order + 1;
     if (!only_swings_) derive_others(first, jet_order);
-    return asked_.jet;
+    return last_point_.jet;
 }
 
 /// Computes the derivatives, from order `from` to `to`, of all parts except sines and the free motion.
 void WalkedCurve::derive_others(std::size_t from, std::size_t to) {
-    const PartValues& asked = *asked_.values;
+    const PartValues& point = *last_point_.values;
     Jet more{};
     for (std::size_t j = 0; j < sum_.rates; ++j) {
-        double f = sum_.rate[j] * asked.amounts[j];
+        double f = sum_.rate[j] * point.amounts[j];
         for (std::size_t i = 2; i <= to; ++i) more[i] += f *= sum_.rate[j];
     }
     for (std::size_t j = 0; j < sum_.resonances.size(); ++j) {
         const Resonance& r = sum_.resonances[j];
-        const auto& [g, u] = asked.resonances[j];
+        const auto& [g, u] = point.resonances[j];
         const Complex root = free_.root();
         const double omega = r.mu.imag();
-        Complex growing = times(r.slope_growing, g), turned = times(r.slope_growing, u);
-        Complex turning = times(r.slope_turning, u);
+        Complex growing = product(r.slope_growing, g), turned = product(r.slope_growing, u);
+        Complex turning = product(r.slope_turning, u);
         for (std::size_t i = 2; i <= to; ++i) {
             // g' = root g + exp(mu tau)
-            growing = times(growing, root);
+            growing = product(growing, root);
             turning = {turned.real() - omega * turning.imag(), turned.imag() + omega * turning.real()};
-            turned = times(turned, root);
+            turned = product(turned, root);
             more[i] += growing.imag() + turning.imag();
         }
     }
-    for (std::size_t i = from; i <= to; ++i) asked_.jet[i] += more[i] * over_factorial[i];
+    for (std::size_t i = from; i <= to; ++i) last_point_.jet[i] += more[i] * over_factorial[i];
     if (sum_.powers.size() <= from) return;
     Jet about{};
     for (std::size_t n = sum_.powers.size(); n-- > 0;) {
-        for (std::size_t i = to; i > 0; --i) about[i] = about[i] * asked_.place + about[i - 1];
-        about[0] = about[0] * asked_.place + sum_.powers[n];
+        for (std::size_t i = to; i > 0; --i) about[i] = about[i] * last_point_.place + about[i - 1];
+        about[0] = about[0] * last_point_.place + sum_.powers[n];
     }
-    for (std::size_t i = from; i <= to; ++i) asked_.jet[i] += about[i];
+    for (std::size_t i = from; i <= to; ++i) last_point_.jet[i] += about[i];
 }
 
 double WalkedCurve::way() const {
-    const PartValues& asked = *asked_.values;
+    const PartValues& point = *last_point_.values;
     double sum = 0;
-    for (std::size_t i = sum_.way_powers.size(); i-- > 0;) sum = sum * asked_.place + sum_.way_powers[i];
-    for (std::size_t j = 0; j < sum_.sines; ++j) sum -= asked.sines[j].real() / sum_.omega[j];
-    for (std::size_t j = 0; j < sum_.rates; ++j) sum += asked.amounts[j] / sum_.rate[j];
+    for (std::size_t i = sum_.way_powers.size(); i-- > 0;) sum = sum * last_point_.place + sum_.way_powers[i];
+    for (std::size_t j = 0; j < sum_.sines; ++j) sum -= point.sines[j].real() / sum_.omega[j];
+    for (std::size_t j = 0; j < sum_.rates; ++j) sum += point.amounts[j] / sum_.rate[j];
     for (std::size_t j = 0; j < sum_.resonances.size(); ++j) {
         const Resonance& r = sum_.resonances[j];
-        sum += imaginary(r.way_growing, asked.resonances[j][0], r.way_turning, asked.resonances[j][1]);
+        sum += imaginary(r.way_growing, point.resonances[j][0], r.way_turning, point.resonances[j][1]);
     }
-    if (sum_.has_free) sum += free_.theta(asked.free);
-    return asked_.aside == 0 ? sum : sum + asked_.further_way();
+    if (sum_.has_free) sum += free_.theta(point.free);
+    return last_point_.aside == 0 ? sum : sum + last_point_.further_way();
 }
 
-double WalkedCurve::Asked::further_way() const {
+double WalkedCurve::LastPoint::further_way() const {
     double further = 0;
     for (std::size_t i = jet_size; i-- > 4;) further = (further + jet[i] * over[i + 1]) * aside;
     for (std::size_t i = 4; i-- > 0;) further = (further + jet[i] * over[i + 1]) * aside;

@@ -10,6 +10,7 @@
 #include <limits>
 #include <vector>
 
+#include "motion/complex_product.hpp"
 #include "motion/exact/free_motion.hpp"
 #include "text/not_copied.hpp"
 
@@ -17,10 +18,6 @@ namespace dinal::motion::exact {
 
 using Complex = std::complex<double>;
 
-/// The product of finite numbers, without the checks of std::complex.
-inline Complex times(Complex a, Complex b) {
-    return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
-}
 /// The imaginary part of a g + b u.
 inline double imaginary(Complex a, Complex g, Complex b, Complex u) {
     return (a.real() * g.imag() + a.imag() * g.real()) + (b.real() * u.imag() + b.imag() * u.real());
@@ -47,13 +44,13 @@ struct Resonance {
         if (size < 0.05) {
             // (exp(z) - 1)/z: the first omitted term is z^3/24, or z^9/10!.
             Complex series = 1;
-            for (int n = size < 1e-6 ? 3 : 9; n >= 2; --n) series = 1.0 + times(series, z) / static_cast<double>(n);
-            return tau * times(series, root_turned);
+            for (int n = size < 1e-6 ? 3 : 9; n >= 2; --n) series = 1.0 + product(series, z) / static_cast<double>(n);
+            return tau * product(series, root_turned);
         }
         // exp(x + i y) - 1 without a difference of nearly equal numbers.
         const double half = std::sin(z.imag() / 2), grown = std::expm1(z.real());
         const Complex less_one{grown * std::cos(z.imag()) - 2 * half * half, (grown + 1) * std::sin(z.imag())};
-        return times(root_turned, less_one) / from_root;
+        return product(root_turned, less_one) / from_root;
     }
 };
 
@@ -96,7 +93,7 @@ public:
 
     /// The value at tau, accurate to rounding. Does not move the walk.
     Value at(double tau) {
-        asked_.set(other_, tau);
+        last_point_.set(other_, tau);
         return turn(start_, turn_by(tau), other_, tau);
     }
     /// The value at tau with three derivatives; further_jet() adds the others.
@@ -106,12 +103,12 @@ public:
     const Jet& jet_ahead(double length) {
         next_place_ = place_ + length;
         there_ = turn(*now_, turn_by(length), *next_, next_place_);
-        asked_.set(*next_, next_place_);
+        last_point_.set(*next_, next_place_);
         return derive(there_);
     }
-    bool asked_ahead() const { return asked_.values != &other_; }
+    bool is_ahead() const { return last_point_.values != &other_; }
     /// Moves the point of way() by this much from the last point of jet().
-    void step_aside(double further) { asked_.aside = further; }
+    void step_aside(double further) { last_point_.aside = further; }
     /// For a velocity: its integral from the start to the last point of at() or jet().
     double way() const;
 
@@ -234,7 +231,7 @@ private:
         }
     };
     /// The last point of at() or jet().
-    struct Asked {
+    struct LastPoint {
         const PartValues* values;
         double place = 0;
         Jet jet{};  // derivatives there, as far as they were computed
@@ -271,7 +268,7 @@ private:
         const double* omega = sum_.omega.data();
         Complex* turned = to.sines.data();
         for (std::size_t j = 0; j < sum_.sines; ++j) {
-            const Complex z = times(part[j], factor[j]);
+            const Complex z = product(part[j], factor[j]);
             turned[j] = z;
             y.f += z.imag();
             y.slope += omega[j] * z.real();
@@ -304,7 +301,7 @@ private:
     PartValues* next_ = &first_;
     double place_ = 0, next_place_ = 0;
     Value here_, there_;
-    Asked asked_{&other_};
+    LastPoint last_point_{&other_};
 };
 
 }  // namespace dinal::motion::exact

@@ -74,7 +74,7 @@ void ExactEngine::update_M() {
 }
 
 bool ExactEngine::advance() {
-    if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
+    if (contact_.phase() == LoneContact::Phase::arrived && !continue_if(decide())) return false;
     if (along_lines()) return outcome_ == model::Outcome::reached_end;
     if (!contact_.stuck()) return move();
     return contact_.for_good(standstill()) ? rest_until_end() : stay();
@@ -120,10 +120,10 @@ bool ExactEngine::move() {
     const double start_pull = pull_at_release_ ? *pull_at_release_ : pull();
     pull_at_release_.reset();
     const double cost = arc_.cost(formula_);
-    asked_ = std::min({clock_.until(piece_end_), arc_.longest(formula_), formula_.grows_in() * growth_of_an_arc});
-    if (cost * asked_ > greatest_cost) asked_ = greatest_cost / cost;
-    if (comes_from_afar()) asked_ = std::min(asked_, decay_of_an_arc / arc_.free().decay());
-    const double length = arc_.begin(formula_, {y_.velocity, start_pull}, asked_);
+    requested_ = std::min({clock_.until(piece_end_), arc_.longest(formula_), formula_.grows_in() * growth_of_an_arc});
+    if (cost * requested_ > greatest_cost) requested_ = greatest_cost / cost;
+    if (comes_from_afar()) requested_ = std::min(requested_, decay_of_an_arc / arc_.free().decay());
+    const double length = arc_.begin(formula_, {y_.velocity, start_pull}, requested_);
     cost_.spent += cost * length + Cost::between_calls / arcs_between_questions;
     bound_ = arc_.velocity().fourth_bound(length);
     if (!within_range(bound_)) {
@@ -134,7 +134,8 @@ bool ExactEngine::move() {
     std::optional<double> zero;
     if (!contact_.passes()) {
         zero = stop(start_pull, length, crept, left);
-        if (leaving && !left) return contact_.creep(standstill()) || go_on(contact_.failed_to_leave(standstill()));
+        if (leaving && !left)
+            return contact_.creep(standstill()) || continue_if(contact_.failed_to_leave(standstill()));
     }
     double tau = zero.value_or(length);
     if (zero && clock_.after(tau) >= piece_end_) tau = clock_.until(piece_end_);
@@ -152,7 +153,7 @@ bool ExactEngine::move() {
     if (zero) {
         contact_.arrive();
     } else {
-        contact_.go_on();
+        contact_.note_time_passed();
     }
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
@@ -268,7 +269,7 @@ void ExactEngine::record_turns(double start_pull, double length) {
         // At a zero of the velocity, way() is the displacement near it.
         const double theta = Clock{y_.theta, theta_rest_}.later(velocity.way()).hi;
         contact_.turned({clock_.after(turn), theta, formula_.value(turn)});
-        if (behind && !velocity.asked_ahead()) velocity.look_at(turn);
+        if (behind && !velocity.is_ahead()) velocity.look_at(turn);
         velocity.accept_look();
     }
 }
@@ -291,7 +292,7 @@ void ExactEngine::keep(double tau, double start_pull, bool standing) {
     if (!(tau > 0)) return;
     arcs_->add({.start = clock_,
                 .length = tau,
-                .asked = asked_,
+                .requested = requested_,
                 .begin = y_,
                 .theta_rest = theta_rest_,
                 .pull = start_pull,
@@ -350,7 +351,7 @@ bool ExactEngine::stay() {
     const bool held = contact_.phase() == LoneContact::Phase::held;
     if (!held) {
         const model::Motion towards = contact_.pulled(M_, y_.theta);
-        if (towards != model::Motion::stuck) return go_on(contact_.release(standstill(), towards));
+        if (towards != model::Motion::stuck) return continue_if(contact_.release(standstill(), towards));
     }
     make_load();
     const double bound = load_.fourth_bound(length);
@@ -380,7 +381,7 @@ bool ExactEngine::stay() {
         }
     }
     if (!end_arc(length, y_, 0)) return false;
-    contact_.go_on();
+    contact_.note_time_passed();
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -403,7 +404,7 @@ bool ExactEngine::stay_held(double length) {
     } else if (!end_arc(length, y_, 0)) {
         return false;
     }
-    contact_.go_on();
+    contact_.note_time_passed();
     return std::isfinite(M_) || fail(model::Outcome::excitation_not_finite);
 }
 
@@ -416,7 +417,7 @@ bool ExactEngine::release_at(double tau, model::Motion towards, bool crosses) {
     }
     const bool sane = contact_.release(standstill(), towards);
     if (contact_.stuck()) pull_at_release_.reset();  // the creep has ended in rest
-    return go_on(sane);
+    return continue_if(sane);
 }
 
 }  // namespace dinal::motion::exact

@@ -104,7 +104,7 @@ private:
         return contact_.decide(standstill());
     }
     /// Continues after a decision at velocity zero; `sane` is false after too many standstills in a row.
-    bool go_on(bool sane) { return sane || fail(model::Outcome::chattering); }
+    bool continue_if(bool sane) { return sane || fail(model::Outcome::chattering); }
     bool asked_to_stop(double t);
     bool fail(model::Outcome outcome) {
         outcome_ = outcome;
@@ -174,7 +174,7 @@ private:
     double theta_rest_ = 0;  // rounding error of theta
     double M_ = 0;           // limit from the right
     double piece_end_;       // the next break of M, or the end of the run
-    double asked_ = 0;       // requested length of the present arc
+    double requested_ = 0;   // requested length of the present arc
     Habits habits_;
     Creep creep_;
     double bound_ = 0;  // bound of the velocity's fourth derivative

@@ -135,7 +135,7 @@ void ExactEngine::move_along(double until) {
 
 /// Writes the rows on a line in motion, and stores its arc.
 bool ExactEngine::write_line_of_record(double h, double M, model::State end, double start_pull) {
-    asked_ = h;
+    requested_ = h;
     if (rows_.next_time() < record_.time(1)) {
         model::closed_form(excitation_, clock_.hi, 0, formula_);
         arc_.begin(formula_, {y_.velocity, start_pull}, h);

@@ -28,9 +28,10 @@ public:
 
     double w0() const { return w0_; }
     double w0_squared() const { return w0_squared_; }
-    /// The rate of the faster of its two parts, per time unit, which bounds the growth of derivatives.
+    /// The rate of the faster part of the motion, per time unit, which bounds the growth of derivatives.
     double fastest() const { return fastest_; }
-    /// The rate of the part that does not decay at once; it also converts rounding of an angle to that of a velocity.
+    /// The rate of the slow part if the two rates are far apart, otherwise w0; it also converts rounding of an angle to
+    /// that of a velocity.
     double lasting() const { return apart_ ? slow_ : w0_; }
     /// The decay rate of its slowest part, per time unit.
     double decay() const { return slow_; }

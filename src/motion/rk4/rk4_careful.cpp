@@ -45,7 +45,7 @@ bool Rk4Engine::careful_step(double end, const Loads* known) {
 
 bool Rk4Engine::piece(double end, bool break_at_end, const Loads* known) {
     while (t_ < end) {
-        if (contact_.phase() == LoneContact::Phase::arrived && !go_on(decide())) return false;
+        if (contact_.phase() == LoneContact::Phase::arrived && !continue_if(decide())) return false;
         if (contact_.stuck()) {
             if (!stay(end, break_at_end, known)) return false;
             continue;
@@ -68,13 +68,13 @@ bool Rk4Engine::piece(double end, bool break_at_end, const Loads* known) {
         }
         rows_until(end, StepInterpolant(length, y_, s.a0, s.y, s.a1));
         t_ = end, y_ = s.y, M_ = s.M;
-        contact_.go_on();
+        contact_.note_time_passed();
     }
     return finite();
 }
 
 Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end, const Loads* known) const {
-    if (feedback_) return feedback_step(length, end, break_at_end, Asks::freely);
+    if (feedback_) return feedback_step(length, end, break_at_end, Evaluated::at_state);
     // Samples exist for whole steps only, but the one at the end serves every piece that ends there.
     const bool whole = known != nullptr && length > steps_.h * (1 - 1e-9);
     const double middle = whole ? known->middle : excitation_.value(t_ + length / 2);
@@ -86,13 +86,14 @@ Rk4Engine::Stepped Rk4Engine::step(double length, double end, bool break_at_end,
     return {y, std::isfinite(middle) ? M1 : middle, acceleration(f0, y_), acceleration(f1, y)};
 }
 
-Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end, Asks asks) const {
+Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool break_at_end, Evaluated evaluated) const {
     const double half = t_ + length / 2, t1 = t_ + length;
     const auto along = [&](double h, double v, double a) {
         return model::State{y_.theta + h * v, y_.velocity + h * a};
     };
     const auto M = [&](double t, const model::State& y) {
-        return M_at(t, end, break_at_end, asks == Asks::beside ? contact_.on_side_of_motion(y) : y);
+        return M_at(t, end, break_at_end,
+                    evaluated == Evaluated::on_side_of_motion ? contact_.on_side_of_motion(y) : y);
     };
     const bool leaving = contact_.phase() == LoneContact::Phase::leaving;
     const double a0 = acceleration_at(y_, leaving ? excitation_.value(t_, contact_.on_side_of_motion(y_)) : M_);
@@ -106,8 +107,8 @@ Rk4Engine::Stepped Rk4Engine::feedback_step(double length, double end, bool brea
                           y_.velocity + length / 6 * (a0 + 2 * a2 + 2 * a3 + a4)};
     const double way = model::sign_of(contact_.motion());
     const double least = std::min({way * y1.velocity, way * y2.velocity, way * y3.velocity, way * y4.velocity});
-    if (asks == Asks::freely && !(least > 0) && contact_.jumps(t1, y1.theta)) {
-        return feedback_step(length, end, break_at_end, Asks::beside);
+    if (evaluated == Evaluated::at_state && !(least > 0) && contact_.jumps(t1, y1.theta)) {
+        return feedback_step(length, end, break_at_end, Evaluated::on_side_of_motion);
     }
     const double M1 = M(t1, y1);
     return {y1, std::isfinite(a2 + a3 + a4) ? M1 : a2 + a3 + a4, a0, acceleration_at(y1, M1)};
@@ -122,10 +123,10 @@ bool Rk4Engine::reach_zero(const Stepped& whole, double zero, double end, bool b
             if (!contact_.creep(standstill())) contact_.arrive();
             return finite();
         }
-        if (!contact_.creep(standstill()) && !go_on(contact_.failed_to_leave(standstill()))) return false;
+        if (!contact_.creep(standstill()) && !continue_if(contact_.failed_to_leave(standstill()))) return false;
         rows_standing_until(end);
         t_ = end, M_ = feedback_ ? M_at(end, end, break_at_end, y_) : whole.M;
-        contact_.go_on();
+        contact_.note_time_passed();
         return finite();
     }
     const bool at_end = t_ + zero >= end;
@@ -154,7 +155,7 @@ bool Rk4Engine::stay(double end, bool break_at_end, const Loads* known) {
         if (!release) return finite();
         next = contact_.pulled(M_, y_.theta);
     }
-    return go_on(contact_.release(standstill(), next));
+    return continue_if(contact_.release(standstill(), next));
 }
 
 std::optional<double> Rk4Engine::release_time(double end, bool break_at_end, const Loads* known, double& M_end) const {

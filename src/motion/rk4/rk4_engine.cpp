@@ -134,7 +134,7 @@ std::size_t Rk4Engine::move(std::size_t n, std::size_t i, std::size_t count) {
     block_.begin(i, count, y_, M_, friction_);
     const std::size_t first = i;
     i = block_.step(i, count, model::sign_of(contact_.motion()));
-    if (i > first) contact_.go_on();
+    if (i > first) contact_.note_time_passed();
     end_block(n, first, i);
     return i;
 }

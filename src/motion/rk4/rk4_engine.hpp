@@ -69,10 +69,10 @@ private:
     bool stay(double end, bool break_at_end, const Loads* known);
     bool reach_zero(const Stepped& whole, double zero, double end, bool break_at_end);
     Stepped step(double length, double end, bool break_at_end, const Loads* known) const;
-    /// How feedback is evaluated: at the states of the trial step, or, next to a jump at velocity zero, only on the
-    /// present side of it.
-    enum class Asks { freely, beside };
-    Stepped feedback_step(double length, double end, bool break_at_end, Asks asks) const;
+    /// The states at which feedback is evaluated: those of the trial step, or, next to a jump at velocity zero, only
+    /// those on the present side of it.
+    enum class Evaluated { at_state, on_side_of_motion };
+    Stepped feedback_step(double length, double end, bool break_at_end, Evaluated evaluated) const;
     bool lost_in_rounding(const model::State& y, double a) const;
     void record_turns(double t, double h, double direction, const model::State& y0, double a0, const model::State& y1,
                       double a1);
@@ -95,7 +95,7 @@ private:
         return contact_.decide(standstill());
     }
     /// Continues after a decision at velocity zero; `sane` is false after endless standstills.
-    bool go_on(bool sane) {
+    bool continue_if(bool sane) {
         friction_ = system_.braking(contact_.motion());
         return sane ? finite() : fail(model::Outcome::chattering);
     }
