@@ -516,7 +516,7 @@ private:
     void take(Way& way, bool jumps) { jumps ? jump(way) : static_cast<void>(++way.frames.back().at); }
     /// Takes the jump that follows if the condition is `wanted`. If it is not decided, both branches wait, and the
     /// result is false.
-    bool go_on(Way& way, const Condition& condition, bool wanted) {
+    bool branch_on(Way& way, const Condition& condition, bool wanted) {
         if (condition.decided) {
             take(way, *condition.decided == wanted);
             return true;
@@ -981,7 +981,7 @@ private:
         const Decoded now = decoded(way, *function);
         if (load(now) || look_up(now) || do_arithmetic(now) || branch(now)) return true;
         const auto& [i, a] = std::tie(now.i, now.a);
-        if (const auto condition = comparison(now)) return go_on(way, *condition, i.k());
+        if (const auto condition = comparison(now)) return branch_on(way, *condition, i.k());
         switch (const Code code = i.code()) {
             case Code::call:
             case tailcall: {

@@ -239,7 +239,7 @@ RunningThread::~RunningThread() {
     stop_after_refusal();
     running_here() = caller_;
     if (requested != Stop::none && armed) {
-        set_hook(caller_);  // the coroutine was stopped, so its caller is stopped, too
+        set_hook(caller_);  // the coroutine was stopped, so its caller also is
     }
 }
 

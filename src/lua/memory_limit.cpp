@@ -62,7 +62,7 @@ Bytes size_of(void* block) noexcept {
 }
 
 /// Returns whether a refusal is final. Lua collects garbage after a refusal and asks for the same size again; so it is
-/// final if that is refused, too, or if another size is requested.
+/// final if that is also refused, or if another size is requested.
 bool is_final(std::size_t refused_before, std::size_t size, bool fits) {
     return refused_before != 0 && (refused_before != size || !fits);
 }

@@ -12,7 +12,7 @@ int append_piece(lua_State* /*L*/, const void* piece, std::size_t size, void* te
     return 0;
 }
 
-/// Reads what lua_dump wrote; after the right header it is complete.
+/// Reads the output of lua_dump; with the right header it is complete.
 class DumpReader {
 public:
     explicit DumpReader(std::string_view dumped) : rest_(dumped) {}
@@ -71,7 +71,7 @@ private:
         return made;
     }
 
-    /// Line steps between instructions, and absolute lines for larger steps.
+    /// Reads line steps between instructions, and absolute lines for larger steps.
     void lines(Prototype& made, std::size_t first_line) {
         constexpr signed char too_far = -128;
         const std::string_view steps = take(size());

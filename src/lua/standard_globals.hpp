@@ -33,7 +33,7 @@ void push_standard_fields(lua_State* L);
 /// Returns whether a standard global has been replaced; with `field`, a field of a standard library, such as math.pi.
 bool is_overwritten(lua_State* L, std::string_view name, std::string_view field = {});
 
-/// Returns whether the table `dinal` has this global, too.
+/// Returns whether the table `dinal` also has this global.
 bool is_of_dinal(lua_State* L, std::string_view name);
 
 /// The names of globals that are not standard or have been replaced; sorted.

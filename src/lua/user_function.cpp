@@ -90,8 +90,8 @@ std::uint64_t counters_of_thread() {
 }
 
 // Increases whenever Lua code may have run on this thread: while it is constant, no variable has changed.
-thread_local std::uint64_t world = counters_of_thread();
-thread_local std::uint64_t calls = world;
+thread_local std::uint64_t change_counter = counters_of_thread();
+thread_local std::uint64_t calls = change_counter;
 
 constexpr double failure = std::numeric_limits<double>::quiet_NaN();
 
@@ -146,7 +146,7 @@ std::string definition(lua_State* L) {
 
 CallState::CallState(lua_State* L)
     : L_(L), outer_(current), depth_(outer_ == nullptr ? 1 : outer_->depth_ + 1), number_(++calls) {
-    ++world;
+    ++change_counter;
     constexpr int deepest = 50;
     if (depth_ > deepest) {
         raise(L,
@@ -296,7 +296,7 @@ bool LuaAction::act(double t, model::State& state, std::span<double> states) {
     lua_pushnumber(L, t);
     const int arguments = 1 + call->push_motion(state, states);
     const int status = lua_pcall(L, arguments, 2, top + 1);
-    ++world;
+    ++change_counter;
     if (status != LUA_OK) {
         remember_argument(L, name_.c_str(), "t", t);
         call->keep_error_on_top();
@@ -394,7 +394,7 @@ std::shared_ptr<model::terms::FunctionMemory> LuaMemory::from_top() {
     lua_pushcfunction(L, guarded<copied_table>);
     lua_rotate(L, handler, 2);
     const int status = lua_pcall(L, 1, 1, handler);
-    ++world;
+    ++change_counter;
     std::shared_ptr<LuaMemory> memory;
     if (status == LUA_OK) {
         memory = std::make_shared<LuaMemory>(main_thread(L), luaL_ref(L, LUA_REGISTRYINDEX));
@@ -479,24 +479,24 @@ bool LuaFunction::fits(std::span<const double> states) const {
 model::Formula* LuaFunction::formula(const CallState& call, std::size_t values) {
     if (lua_gethook(call.L_) != nullptr || start_ != LUA_NOREF) return nullptr;
     const bool is_read = formula() != nullptr;
-    if (is_read && seen_ == world) return &*reading_->formula;
+    if (is_read && seen_ == change_counter) return &*reading_->formula;
     if (!is_read && tried_in_ == call.number_) return nullptr;
     if (patience_ > values) {
         patience_ -= values;
         return nullptr;
     }
-    look_again(call);
+    read_again(call);
     return reading_->formula ? &*reading_->formula : nullptr;
 }
 
-void LuaFunction::look_again(const CallState& call) {
+void LuaFunction::read_again(const CallState& call) {
     constexpr std::uint64_t few = 8;
     constexpr std::uint64_t longest_pause = 1024;
     const bool new_call = tried_in_ != call.number_;
     pause_ = values_ < few ? std::min(2 * pause_, longest_pause) : 1;
     patience_ = pause_;
     values_ = 0;
-    seen_ = world;
+    seen_ = change_counter;
     tried_in_ = call.number_;
     push(call.L_);
     reading_ = reading_of(call.L_, -1, arguments_in(call));
@@ -512,8 +512,8 @@ bool LuaFunction::agrees(double read, CallState& call, double t, const model::St
                          std::span<const double> states) {
     constexpr std::uint64_t first = 3, between = 1024;
     if (++values_ > first && values_ % between != 0) return true;
-    const double asked = evaluate(call, t, state, states);
-    if (std::bit_cast<std::uint64_t>(asked) == std::bit_cast<std::uint64_t>(read)) return true;
+    const double by_lua = evaluate(call, t, state, states);
+    if (std::bit_cast<std::uint64_t>(by_lua) == std::bit_cast<std::uint64_t>(read)) return true;
     reading_->formula.reset();
     reading_->obstacle = "it gave another value than its formula";
     return false;
@@ -527,7 +527,7 @@ double LuaFunction::value_with(double t, const model::State& state, std::span<co
         if (is_allowed(M) && agrees(M, *call, t, state, states)) return M;
     }
     const double M = evaluate(*call, t, state, states);
-    if (!formula()) ++world;
+    if (!formula()) ++change_counter;
     return M;
 }
 
@@ -662,7 +662,7 @@ std::size_t LuaFunction::fill(std::span<const double> times, std::span<double> o
     }
     if (filled == times.size() || call->failed_) return filled;
     filled += evaluate(*call, times.subspan(filled), out.subspan(filled));
-    if (!formula()) ++world;
+    if (!formula()) ++change_counter;
     return filled;
 }
 

@@ -171,7 +171,7 @@ private:
     /// The formula if reading it is worthwhile for this many values (`many` for breaks), otherwise null.
     model::Formula* formula(const CallState& call, std::size_t values);
     static constexpr std::size_t many = std::size_t{1} << 20U;
-    void look_again(const CallState& call);
+    void read_again(const CallState& call);
     bool agrees(double read, CallState& call, double t, const model::State& state, std::span<const double> states);
     Arguments arguments_in(const CallState& call) const;
     /// Returns whether the formula expects these states.
@@ -195,7 +195,7 @@ private:
     // The formula and data on its validity. Reading is worthwhile only after some values, so Lua evaluates the first
     // ones, and all of them if other functions run in between.
     std::shared_ptr<Reading> reading_ = std::make_shared<Reading>();
-    std::uint64_t seen_ = 0;       // `world` at the last comparison with the assumed constants
+    std::uint64_t seen_ = 0;       // `change_counter` at the last comparison with the assumed constants
     std::uint64_t tried_in_ = 0;   // the call in which it was read last
     std::uint64_t values_ = 0;     // values computed by the formula since then
     std::uint64_t patience_ = 12;  // values to be evaluated by Lua before the next reading
