@@ -20,8 +20,8 @@ struct Advice {
 
 /// Returns the hint for an error. `frame` is the function of the error, or nullptr; `statement` is its text as far as
 /// known.
-Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement);
-Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
+Advice advice_on(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement);
+Advice advice_on(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement);
 
 /// Pushes the value of a variable in the frame: a local one (the innermost of that name), an upvalue, or a global.
 void push_variable(lua_State* L, lua_Debug* frame, std::string_view wanted);
@@ -56,10 +56,10 @@ Advice missing_element(lua_State* L, lua_Debug* frame, const lua::LuaMessage& me
 /// error.
 std::string syntax_habit(lua_State* L, const lua::SyntaxMessage& message, std::string_view statement);
 
-/// When words and signs of other languages are looked for: in a chunk that does not compile (first, last if nothing
-/// else explains the error, or between two expressions); in a running chunk, also around a number, name or function of
-/// safe mode at fault; in what Lua says; in an unknown name, or in one typed at the prompt; in an unfinished or a
-/// complete input that compiles.
+/// The situations in which words and signs of other languages are looked for: a chunk that does not compile (`first`;
+/// `last` if nothing else explains the error; `between` two expressions); a run-time error (`running`; around a number,
+/// a name or a function of safe mode at fault); a message of Lua (`said`); an unknown name, or one typed at the prompt;
+/// an unfinished or a complete input that compiles.
 enum class Seen { first, last, between, running, number, named, safe, said, unknown, typed, unfinished, complete };
 
 /// The remark on such words and signs, whatever the message: v[1:3], f"{x}", lambda x, disp. If there is a culprit, it

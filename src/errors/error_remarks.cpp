@@ -312,7 +312,7 @@ std::string_view statement_of(const std::optional<SourceText>& source, int line)
 template <class Error>
 lua::Remarks remarks(lua_State* L, lua_Debug* frame, const Error& error, const std::optional<SourceText>& source,
                      int line) {
-    const Advice advice = help_with(L, frame, error, statement_of(source, line));
+    const Advice advice = advice_on(L, frame, error, statement_of(source, line));
     std::vector<std::string> names = suspects(error);
     if (!advice.culprit.empty()) {
         names.insert(names.begin(), advice.culprit);

@@ -30,10 +30,10 @@ constexpr std::string_view comment_cure = "; a comment begins with --";
 constexpr std::string_view folder_cure = "; :cd folder changes the current folder";
 constexpr std::string_view files_cure = "; :ls lists the files of the current folder";
 
-/// Words and signs of other languages, and what Lua says about them. Each word of a pattern is a token, or several to
-/// choose from: def|fn. n stands for any name, # for any number, 1 for either, w for any word, s for a string, ? for
-/// any token, ... for any number of them, ^ for the beginning, $ for the end. After word+ the next token follows at
-/// once, after word_ behind a blank. In the cure {0}, {1} etc. stand for the matched tokens.
+/// A pattern of another language, and the remark with Lua's equivalent. Each word of a pattern is a token, or several
+/// to choose from: def|fn. n stands for any name, # for any number, 1 for either, w for any word, s for a string, ? for
+/// any token, ... for any number of them, ^ for the beginning, $ for the end. word+ is followed by the next token
+/// without a blank, word_ with one. In the cure {0}, {1} etc. stand for the matched tokens.
 struct Habit {
     std::string_view pattern, cure;
 };

@@ -120,8 +120,8 @@ bool is_declared(const lua::Tokens& all, std::string_view name) {
     return false;
 }
 
-/// Returns whether a function that runs has a variable of this name: the statement may belong to several, as in
-/// sys:simulate{ M = function(t) error "no" end }.
+/// Returns whether a function on the call stack has a variable of this name. The statement may contain several
+/// functions, as sys:simulate{ M = function(t) error "no" end } does.
 bool is_variable(lua_State* L, lua_Debug* frame, std::string_view name) {
     constexpr int most_levels = 50;
     const auto knows = [&](lua_Debug* of) {
@@ -146,8 +146,8 @@ bool is_nil_global(lua_State* L, lua_Debug* frame, const lua::Tokens& all, std::
     return is_nil;
 }
 
-/// A global in the statement that is nil: the value of the missing option, `option = x`; otherwise one with a likely
-/// other spelling, or any if it is known that something is nil.
+/// Advice about a global in the statement that is nil: with an option, the value given for it, `option = x`; otherwise
+/// one with a similar known name, or any one with `any`.
 Advice nil_global(lua_State* L, lua_Debug* frame, std::string_view statement, std::string_view option, bool any) {
     const lua::Tokens all = lua::tokens(statement);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -321,7 +321,7 @@ std::string nil_value(lua_State* L, lua_Debug* frame, std::string_view text, boo
     return "";
 }
 
-Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement) {
+Advice advice_on(lua_State* L, lua_Debug* frame, const text::Error& error, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
     if (!error.cure.empty()) {
         return {};
@@ -334,7 +334,7 @@ Advice help_with(lua_State* L, lua_Debug* frame, const text::Error& error, std::
     return nil_global(L, frame, statement, is_nil ? error.option : "", is_nil);
 }
 
-Advice help_with(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
+Advice advice_on(lua_State* L, lua_Debug* frame, const lua::LuaMessage& message, std::string_view statement) {
     luaL_checkstack(L, LUA_MINSTACK, "for the help with an error");
     for (const std::string& habit : {running_habit(L, message, statement), meant_method(L, message, statement)}) {
         if (!habit.empty()) {

@@ -151,7 +151,8 @@ bool is_left_open(std::string_view line) {
     return last == 0 || before_fields.find(line[last - 1]) != std::string_view::npos;
 }
 
-/// The word in a field, without its quotes and with doubled quotes made single. For an empty field its number.
+/// Returns the word in a field, without its quotes and with doubled quotes made single; for an empty field, the number
+/// of the column.
 std::string name_in(std::string_view field, std::size_t number) {
     const bool quoted = field.size() >= 2 && field.front() == '"' && field.back() == '"';
     std::string name;

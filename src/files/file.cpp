@@ -105,7 +105,8 @@ std::string folder_of(const std::string& path) {
     return slash == std::string::npos ? std::string() : path.substr(0, slash + 1);
 }
 
-/// 1 for /dev/stdout etc. Opening these by name would restart at the beginning of a redirected file.
+/// Returns the descriptor that the path names, 1 for /dev/stdout; none for other paths. Opening it by name would
+/// restart at the beginning of a redirected file.
 std::optional<int> open_descriptor(std::string_view path) {
     if (path == "/dev/stdout") {
         return STDOUT_FILENO;

@@ -124,7 +124,7 @@ std::string entries_that_mention(std::string_view wanted, const terminal::Displa
 }
 
 /// The most similar name or option, otherwise the most similar longer word in the summaries.
-std::string likely(std::string_view word) {
+std::string similar_name_hint(std::string_view word) {
     constexpr std::size_t shortest = 6;
     std::vector<std::string> names, words;
     for (const Section& section : sections()) names.emplace_back(section.description->name);
@@ -149,8 +149,8 @@ std::string_view last_name(std::string_view words) {
 }
 
 std::string no_help(std::string_view words) {
-    std::string hint = likely(words);
-    if (hint.empty() && !last_name(words).empty()) hint = likely(last_name(words));  // run.enrgy
+    std::string hint = similar_name_hint(words);
+    if (hint.empty() && !last_name(words).empty()) hint = similar_name_hint(last_name(words));  // run.enrgy
     const std::string shown = text::quoted(words);  // control characters would steer the terminal
     return fmt::format("nothing about '{}'{}{}\n", shown.substr(1, shown.size() - 2), hint,
                        hint.empty() ? "; help \"contents\" lists what there is" : "");

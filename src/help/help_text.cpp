@@ -120,7 +120,7 @@ public:
 };
 
 /// Returns whether a name is specific enough for a mention to count: not a single plain word such as "system" or "v".
-bool telling(std::string_view name) {
+bool is_specific(std::string_view name) {
     return name.find_first_of(".:") != std::string_view::npos;
 }
 
@@ -154,9 +154,9 @@ std::vector<std::string> see_also(const Section& section, const lua::Member& mem
             if (other.kind == lua::Kind::metamethod || name == own) {
                 continue;
             }
-            if (telling(name) && mentions(member.doc.summary, name)) {
+            if (is_specific(name) && mentions(member.doc.summary, name)) {
                 names.add(name);
-            } else if (telling(own) && mentions(other.doc.summary, own)) {
+            } else if (is_specific(own) && mentions(other.doc.summary, own)) {
                 mentioning.push_back(name);
             } else if (&section == &other_section && other.kind == member.kind) {
                 alike.push_back(name);

@@ -446,7 +446,7 @@ int lab_number(lua_State* L) {
 }
 
 /// Calls course.FUNCTION(number, sheet, ...) with the sheet at index 1.
-int of_sheet(lua_State* L, const char* call, const char* function, int arguments) {
+int call_for_sheet(lua_State* L, const char* call, const char* function, int arguments) {
     LabDesk& desk = desk_with_number(L, call);
     int is_whole = 0;
     const lua_Integer sheet = lua_tointegerx(L, 1, &is_whole);
@@ -463,7 +463,7 @@ int of_sheet(lua_State* L, const char* call, const char* function, int arguments
 }
 
 int lab_given(lua_State* L) {
-    return of_sheet(L, "lab.given", "given", 1);
+    return call_for_sheet(L, "lab.given", "given", 1);
 }
 
 int lab_experiment(lua_State* L) {
@@ -471,7 +471,7 @@ int lab_experiment(lua_State* L) {
     if (!lua_isnoneornil(L, 2)) {
         static_cast<void>(lua::finite_argument(L, 2, "lab.experiment(2, x): x"));
     }
-    return of_sheet(L, "lab.experiment", "experiment", 2);
+    return call_for_sheet(L, "lab.experiment", "experiment", 2);
 }
 
 /// Adds a wrong value; returns false if it is already known and does not count again.

@@ -72,7 +72,7 @@ int read_file_handle(lua_State* L) {
 }
 
 /// Replaces a function in the table on the top of the stack; `io` is the index of that table.
-void stand_for(lua_State* L, int io, const char* key, const char* name, lua_CFunction ours) {
+void replace_function(lua_State* L, int io, const char* key, const char* name, lua_CFunction ours) {
     if (lua_getfield(L, -1, key) != LUA_TFUNCTION) {
         lua_pop(L, 1);
         return;
@@ -90,11 +90,11 @@ void take_keyboard_away(lua_State* L) {
     if (lua_getglobal(L, "io") == LUA_TTABLE && lua_getfield(L, -1, "stdin") == LUA_TUSERDATA) {
         lua_pop(L, 1);
         const int io = lua_gettop(L);
-        stand_for(L, io, "read", "io.read", lua::guarded<read_input>);
-        stand_for(L, io, "lines", "io.lines", lua::guarded<read_input>);
+        replace_function(L, io, "read", "io.read", lua::guarded<read_input>);
+        replace_function(L, io, "lines", "io.lines", lua::guarded<read_input>);
         if (luaL_getmetatable(L, LUA_FILEHANDLE) == LUA_TTABLE && lua_getfield(L, -1, "__index") == LUA_TTABLE) {
-            stand_for(L, io, "read", "io.stdin:read", lua::guarded<read_file_handle>);
-            stand_for(L, io, "lines", "io.stdin:lines", lua::guarded<read_file_handle>);
+            replace_function(L, io, "read", "io.stdin:read", lua::guarded<read_file_handle>);
+            replace_function(L, io, "lines", "io.stdin:lines", lua::guarded<read_file_handle>);
         }
     }
     lua_settop(L, top);

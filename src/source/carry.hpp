@@ -19,7 +19,8 @@
 
 namespace dinal::source {
 
-/// Pushes the counterpart of the userdata at the index to `to`, if this room does not know its class.
+/// Pushes the counterpart of the userdata at the index to `to`, and returns whether its class is known; for classes
+/// that this room does not know.
 using CarryObject = bool (*)(lua_State* from, int index, lua_State* to);
 
 class Carrier {

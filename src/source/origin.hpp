@@ -21,8 +21,8 @@ struct Task {
 
 /// The origin of a simulated run; one read from a file has none.
 struct Origin : Task {
-    /// Lua text rebuilding M and the system, upvalues as at the start; empty without functions, when it can be made
-    /// later.
+    /// Lua text that rebuilds M and the system, with upvalues as at the start of the run; empty without user functions,
+    /// as the text can then be made later.
     std::vector<std::string> set_up;
 };
 

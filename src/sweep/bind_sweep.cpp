@@ -95,7 +95,8 @@ int take_field(lua_State* L, int table, const char* name) {
     return type;
 }
 
-/// The period in the options at the index, given as period, frequency or omega, which are removed.
+/// Takes the options period, frequency or omega out of the table at `more`; returns the period that they give, or else
+/// `otherwise`.
 double period_of_point(lua_State* L, int more, double otherwise) {
     const auto period = [](const char* name, double x) {
         return *name == 'p' ? x : *name == 'f' ? 1 / x : 2 * std::numbers::pi / x;
@@ -182,7 +183,7 @@ int samples_of_point(lua_State* L) {
     return 1;
 }
 
-/// A row for each sample of these points; one row for a failed point.
+/// Makes a row for each sample of these points, and one row for a failed point.
 std::vector<DataColumn> samples_as_rows(const PointGrid& grid, const SweepResults& results,
                                         const std::vector<std::size_t>& done, std::size_t keep) {
     std::vector<std::size_t> points;
@@ -351,7 +352,7 @@ Spot golden_section(const Cost& cost, double a, double b) {
 
 /// The simplex method of Nelder and Mead within the ranges.
 Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
-    const auto look = [&](std::array<double, 2> at) {
+    const auto evaluated = [&](std::array<double, 2> at) {
         for (double& x : at) x = std::clamp(x, 0.0, 1.0);
         return Spot{at, cost(at)};
     };
@@ -359,7 +360,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
     for (std::size_t i = 0; i < 2; ++i) {
         std::array<double, 2> at = start.at;
         at[i] += at[i] + size <= 1 ? size : -size;
-        corner[i + 1] = look(at);
+        corner[i + 1] = evaluated(at);
     }
     constexpr int most = 400;
     for (int i = 0; i < most; ++i) {
@@ -375,7 +376,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
                 const double middle = (corner[0].at[k] + corner[1].at[k]) / 2;
                 at[k] = middle + t * (corner[2].at[k] - middle);
             }
-            return look(at);
+            return evaluated(at);
         };
         const Spot mirrored = along(-1);
         if (mirrored.value < corner[0].value) {
@@ -393,7 +394,7 @@ Spot nelder_mead(const Cost& cost, const Spot& start, double size) {
             continue;
         }
         for (std::size_t c = 1; c < 3; ++c) {
-            corner[c] = look({(corner[0].at[0] + corner[c].at[0]) / 2, (corner[0].at[1] + corner[c].at[1]) / 2});
+            corner[c] = evaluated({(corner[0].at[0] + corner[c].at[0]) / 2, (corner[0].at[1] + corner[c].at[1]) / 2});
         }
     }
     return *std::ranges::min_element(corner, {}, &Spot::value);

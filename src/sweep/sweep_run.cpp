@@ -65,7 +65,7 @@ struct SweepWork {
     /// Runs in a worker's state: replaces the copied function on the top by the function to be called.
     const std::function<void(lua_State* worker)>& adapt;
     /// Called 50 times a second on the waiting thread, and at the end; false stops the sweep.
-    std::function<bool()> look = {};
+    std::function<bool()> keeps_going = {};
     std::atomic<std::size_t> next = 0;
     std::atomic<std::size_t> finished = 0;
     std::atomic<bool> ends = false;
@@ -159,7 +159,7 @@ struct PointLoop {
         const int status = lua_pcall(L, 1, 1, handler);
         lua::stop_after_refusal();
         const std::size_t place = number - work.first;
-        if (work.max_time > 0 && is_given_up(place)) return true;
+        if (work.max_time > 0 && end_time_limit(place)) return true;
         if (status != LUA_OK && lua::interrupt_requested()) return false;
         const std::string trouble = status != LUA_OK ? std::string(lua::text_at(L, -1)) : complaint();
         if (!trouble.empty()) {
@@ -180,8 +180,9 @@ struct PointLoop {
         return true;
     }
 
-    /// Ends a task; returns whether it was given up, which is then its result.
-    bool is_given_up(std::size_t place) const {
+    /// Ends the time limit of a point; returns whether it was exceeded, and then stores that as the failure of the
+    /// point.
+    bool end_time_limit(std::size_t place) const {
         const bool late = watch.has_given_up();
         ++watch.task;
         watch.since = std::numeric_limits<double>::infinity();
@@ -191,7 +192,8 @@ struct PointLoop {
         return true;
     }
 
-    /// Returns the error in the result on the top of the stack. Afterwards each of its names has a column.
+    /// Returns the error in the table of results on the top of the stack; if there is none, each of its names has a
+    /// column afterwards.
     std::string complaint() const {
         if (!lua_istable(L, -1)) {
             return fmt::format("run must return a table of named numbers such as {{ A = s.amplitude }}, got {}",
@@ -282,7 +284,7 @@ public:
     /// Computes all points, or until a stop is requested. Raises an error if memory is insufficient.
     void run(lua_State* L) {
         using std::chrono::milliseconds;
-        constexpr milliseconds look_again{20};
+        constexpr milliseconds between_checks{20};
         if (function_ != 0) return run_here(L);
         terminal::Progress progress =
             terminal::Progress::of_steps(work_.call, static_cast<double>(work_.points.size()));
@@ -292,9 +294,9 @@ public:
         if (threads.empty())
             lua::raise(L, std::string(work_.call) + ": the operating system refuses to start a thread");
         std::unique_lock lock(ending_);
-        while (!ended_.wait_for(lock, look_again, [this] { return running_ == 0; })) {
+        while (!ended_.wait_for(lock, between_checks, [this] { return running_ == 0; })) {
             progress.advance(static_cast<double>(work_.finished.load(std::memory_order_relaxed)));
-            if (work_.look && !work_.ends && !work_.look()) work_.ends = true;
+            if (work_.keeps_going && !work_.ends && !work_.keeps_going()) work_.ends = true;
             if (work_.max_time > 0) watch(threads);
             if (lua::interrupt_requested()) {
                 for (std::thread& thread : threads) lua::nudge(thread.native_handle());
@@ -302,7 +304,7 @@ public:
         }
         lock.unlock();
         for (std::thread& thread : threads) thread.join();
-        if (work_.look && !work_.ends) work_.look();
+        if (work_.keeps_going && !work_.ends) work_.keeps_going();
         if (!trouble_.empty()) lua::raise(L, std::string(work_.call) + ": " + trouble_);
     }
 
@@ -527,7 +529,7 @@ private:
             if (!results_->is_done(place)) work.points.push_back(work.first + place);
         }
         if (journal_) {
-            work.look = [this] {
+            work.keeps_going = [this] {
                 trouble_ = journal_->write(false);
                 return !trouble_;
             };

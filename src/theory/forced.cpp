@@ -107,8 +107,9 @@ bool DenHartog::grows() const {
     return r_ == 1 && modes_.zeta() == 0;
 }
 
-/// The velocity of the steady motion must keep its sign for half a period after a turn at x = 0. Divided by r sin rx,
-/// its part proportional to gamma must stay below the rest, which is the constant `swing`.
+/// The velocity of the steady motion must keep its sign for half a period after a turn at x = 0. Returns the part of it
+/// that is proportional to gamma, divided by gamma r sin rx; gamma times this must stay below the rest, which is the
+/// constant `swing`.
 double DenHartog::velocity_excess(double x) const {
     const double zeta = modes_.zeta();
     const double q = modes_.rate();
