@@ -26,6 +26,11 @@ constexpr double sign_of(Motion motion) {
     return static_cast<double>(static_cast<int>(motion));
 }
 
+/// The index of a direction in pairs of numbers: backward 0, forward 1.
+constexpr std::size_t side_of(Motion way) {
+    return way == Motion::forward ? 1 : 0;
+}
+
 inline Motion motion_of(double velocity) {
     return velocity > 0 ? Motion::forward : velocity < 0 ? Motion::backward : Motion::stuck;
 }

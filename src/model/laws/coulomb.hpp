@@ -1,4 +1,4 @@
-// Laws of torques that do not depend on the speed, and such torques beside another law.
+// Laws of torques that do not depend on the speed, also in addition to another law.
 #pragma once
 
 #include <fmt/format.h>
@@ -94,9 +94,8 @@ struct Sum {
     std::array<double, 2> more_sliding{}, more_holding{};  ///< backward and forward
 
     static constexpr bool depends_on_speed = speed;
-    [[nodiscard]] static std::size_t side(Motion way) { return way == Motion::forward ? 1 : 0; }
-    double sliding(Motion way, double at) const { return main.sliding(way, at) + more_sliding[side(way)]; }
-    double holding(Motion way) const { return main.holding(way) + more_holding[side(way)]; }
+    double sliding(Motion way, double at) const { return main.sliding(way, at) + more_sliding[side_of(way)]; }
+    double holding(Motion way) const { return main.holding(way) + more_holding[side_of(way)]; }
     [[nodiscard]] std::optional<text::Error> complaint() const { return main.complaint(); }
     std::size_t ranges() const { return more_sliding[0] == more_sliding[1] ? main.ranges() : 0; }
     SpeedRange range(std::size_t i) const {

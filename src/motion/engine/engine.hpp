@@ -80,7 +80,7 @@ private:
     Ending watch(const Frame& frame);
     void hold_again(std::size_t joint, double torques);
     bool ends_before(double x);
-    bool comes_early(const Ending& ending);
+    bool repeat_if_early(const Ending& ending);
     bool end_at(double x, const Frame& frame, SampledLoads& sampled);
     bool arrive(double x, bool whole);
     bool sample_controllers();
@@ -168,8 +168,6 @@ private:
     bool begun() const { return now_.t.hi > problem_.window.start || problem_.before != nullptr; }
     std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    std::size_t own_joints() const { return mechanics_.joints() - problem_.hidden; }
-    std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
     /// Returns the magnitude of the present torques on the angle of a joint.
     [[nodiscard]] double torque_size(std::size_t joint) {
         sizes_.find(mechanics_, segment_, now_.here());

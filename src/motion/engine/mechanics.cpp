@@ -17,10 +17,6 @@ using model::Joint;
 using model::Motion;
 namespace laws = model::laws;
 
-std::size_t side_of(Motion way) {
-    return way == Motion::forward ? 1 : 0;
-}
-
 void add_shape(Frame::Shape& to, const Frame::Shape& what, double by) {
     for (const Frame::Share& share : what) {
         const auto same =

@@ -27,15 +27,15 @@ Recorder::Recorder(const Request& problem, const Mechanics& mechanics, Run& resu
     }
     history_ = std::make_shared<History>(std::move(weights), n(), start.y, start.t.hi,
                                          problem.before ? problem.before->past : nullptr, problem.history_bytes);
-    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (own_joints() - n()) + problem.hidden +
-                                mechanics.states_of_user() + (problem.joined_elsewhere ? 0 : n());
+    const std::size_t columns = 1 + columns_of_body * n() + columns_of_link * (problem_.own_joints() - n()) +
+                                problem.hidden + mechanics.states_of_user() + (problem.joined_elsewhere ? 0 : n());
     Growing<double> table(problem.rows.count(), columns);
-    cells_ = table.writable();
+    cells_ = table.writable_values();
     result.rows = Rows(std::move(table));
 }
 
 void Recorder::report_user_event(const Now& now, std::size_t event) {
-    for (std::size_t j = 0; j < own_joints(); ++j) {
+    for (std::size_t j = 0; j < problem_.own_joints(); ++j) {
         report_event(now, EventKind::user, j, static_cast<int>(event));
     }
 }
@@ -59,7 +59,7 @@ void Recorder::report_slide(const Now& now, const SlideChange& change) {
     if (!(now.t.hi > problem_.window.start)) return;
     const auto [own, other] = change.begins ? std::pair(EventKind::slide_begins, EventKind::slide_ends)
                                             : std::pair(EventKind::slide_ends, EventKind::slide_begins);
-    for (std::size_t j = 0; j < own_joints(); ++j) {
+    for (std::size_t j = 0; j < problem_.own_joints(); ++j) {
         if (change.joint && *change.joint != j) continue;
         if (!withdraw(other, j, now.t.hi)) report_event(now, own, j);
     }
@@ -243,7 +243,7 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         row.damping = problem_.system.joints[i].damping;
         for_each_column<body_columns>(put_column);
     }
-    for (std::size_t j = n(); j < own_joints(); ++j) {
+    for (std::size_t j = n(); j < problem_.own_joints(); ++j) {
         const double belt = mechanics_.belt(j, t, at.side);
         double torque = -mechanics_.joint_torque(j, at, now.mode, belt);
         if (!mechanics_.loads()[j].none()) torque += mechanics_.load(j, at);
@@ -255,8 +255,8 @@ bool Recorder::put_row(const Stretch& of, double t, double x) {
         row.damping = problem_.system.joints[j].damping;
         for_each_column<link_columns>(put_column);
     }
-    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
-        const std::size_t body = moved_body(j);
+    for (std::size_t j = problem_.own_joints(); j < mechanics_.joints(); ++j) {
+        const std::size_t body = problem_.moved_body(j);
         const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
         good = put(balance_.holding[j] + more * balance_.accelerations[body]) && good;
     }
@@ -324,8 +324,8 @@ std::vector<Kept::JointTorques> Recorder::acting(const Now& now, const Segment& 
             }
         }
         all[j].holds = now.rubs(j) && now.mode.leans[j] == 0 && now.mode.friction[j].way == Motion::stuck;
-        if (j >= own_joints()) {  // the torque that moves a prescribed body counts as its input
-            const std::size_t body = moved_body(j);
+        if (j >= problem_.own_joints()) {  // the torque that moves a prescribed body counts as its input
+            const std::size_t body = problem_.moved_body(j);
             const double more = mechanics_.own_inertia(body) - problem_.system.bodies[body].inertia;
             for (std::size_t node = 0; node < node_count; ++node) {
                 all[body].M[node] += segment.holding[j][node] + more * segment.f[n() + body][node];

@@ -91,8 +91,6 @@ private:
 
     std::size_t n() const { return mechanics_.bodies(); }
     /// The number of joints without the last ones, which impose prescribed motions.
-    std::size_t own_joints() const { return mechanics_.joints() - problem_.hidden; }
-    std::size_t moved_body(std::size_t hidden) const { return problem_.system.joints[hidden].first(); }
 
     const Request& problem_;
     const Mechanics& mechanics_;

@@ -41,7 +41,7 @@ Engine::Engine(const Request& problem, Run& result)
       contacts_{.of = std::vector<Contacts::Contact>(mechanics_.joints())},
       walls_(problem.system),
       breaks_(mechanics_),
-      projection_(mechanics_, own_joints()),
+      projection_(mechanics_, problem_.own_joints()),
       impulses_(mechanics_),
       users_(mechanics_, problem.drive.events) {
     const std::size_t joints = mechanics_.joints();
@@ -168,7 +168,7 @@ bool Engine::advance() {
     const Ending ending = watch(frame);
     if (outcome_ != Outcome::reached_end) return false;
     if (ending.by == By::condition && ends_before(ending.x)) return true;
-    if (ending.by != By::nobody && conditions_->any() && comes_early(ending)) return true;
+    if (ending.by != By::nobody && conditions_->any() && repeat_if_early(ending)) return true;
     if (ending.by == By::condition && problem_.step == 0 &&
         !solver_->hides_nothing_until(ending.x, segment_, now_.mode)) {
         retry(Flow::Attempt::shorten);
@@ -319,7 +319,7 @@ bool Engine::ends_before(double x) {
 /// Repeats a stretch with nearly its useful length if its first event is very early, or if rates extrapolated beyond it
 /// dwarf those before. A long extrapolation of a function that acts only in a short window loses the window's end to
 /// rounding.
-bool Engine::comes_early(const Ending& ending) {
+bool Engine::repeat_if_early(const Ending& ending) {
     constexpr double early = 1.0 / 64, least = 1.0 / 1024;
     const double part = 1 + ending.x, late = std::max(std::fabs(now_.t.hi), std::fabs(segment_.end));
     if (problem_.step > 0 || (part <= 0 && !ending.blurred)) return false;
@@ -443,7 +443,7 @@ void Engine::align_rigid_velocities() {
     const std::vector<char>& rigid = now_.mode.rigid;
     if (problem_.hidden == 0 && std::count(rigid.begin(), rigid.end(), 0) == std::ssize(rigid)) return;
     Mode sticking = now_.mode;
-    for (std::size_t j = 0; j < own_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
+    for (std::size_t j = 0; j < problem_.own_joints(); ++j) now_.mode.friction[j].way = Motion::forward;
     project(now_.side());
     now_.mode = std::move(sticking);
 }
@@ -455,8 +455,8 @@ bool Engine::decide_after_break() {
     const std::vector<double> before = now_.y;
     const double energy = kinetic_energy();
     align_rigid_velocities();
-    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
-        const std::size_t body = moved_body(j);
+    for (std::size_t j = problem_.own_joints(); j < mechanics_.joints(); ++j) {
+        const std::size_t body = problem_.moved_body(j);
         const double v = now_.y[n() + body], jump = v - before[n() + body];
         if (!(std::fabs(jump) > 64 * rounding * (std::fabs(v) + std::fabs(before[n() + body])))) continue;
         recorder_->add_jump(now_.t.hi, body, {.input = kinetic_energy() - energy});
@@ -482,9 +482,9 @@ void Engine::add_work_of_moved(std::size_t joint, double before, double lost) {
     if (problem_.hidden == 0) return;
     const double now = kinetic_energy(), work = now - before + lost;
     if (!(std::fabs(work) > 64 * rounding * (now + before + lost))) return;
-    std::size_t body = moved_body(own_joints());
-    for (std::size_t j = own_joints(); j < mechanics_.joints(); ++j) {
-        if (joint_at(joint).is_on(moved_body(j))) body = moved_body(j);
+    std::size_t body = problem_.moved_body(problem_.own_joints());
+    for (std::size_t j = problem_.own_joints(); j < mechanics_.joints(); ++j) {
+        if (joint_at(joint).is_on(problem_.moved_body(j))) body = problem_.moved_body(j);
     }
     recorder_->add_jump(now_.t.hi, body, {.input = work});
 }

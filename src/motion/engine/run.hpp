@@ -34,6 +34,10 @@ struct Request {
     std::size_t hidden = 0;         ///< number of rigid joints that impose prescribed motions, after the system's own
     bool joined_elsewhere = false;  ///< whether the caller joins continued runs and decides about rest
 
+    /// The number of joints of the system itself.
+    std::size_t own_joints() const { return system.joints.size() - hidden; }
+    /// The body whose motion this hidden joint imposes.
+    std::size_t moved_body(std::size_t joint) const { return system.joints[joint].first(); }
     /// The same request for another system and its drive, which must outlive it.
     Request on(const model::System& other, const model::Drive& its) const {
         return {.system = other,
