@@ -270,7 +270,7 @@ private:
             const bool close =
                 spot && moved.norm() <= 2 * step.length && moved.dot(walk.ahead) > straight / 2 * moved.norm();
             if (!close || on.dot(walk.ahead) <= straight) {
-                const Bend bend = meet_bend(walk, step.length, close);
+                const Bend bend = handle_bend(walk, step.length, close);
                 if (bend == Bend::lost) return path_;
                 if (bend == Bend::retry) continue;
             }
@@ -323,7 +323,7 @@ private:
     /// Handles a step that turned too far, or found no point: continues behind a corner, or shortens the step.
     /// `stands`: a short step across a corner that was not rounded is kept.
     enum class Bend { stands, retry, lost };
-    Bend meet_bend(Progress& walk, double length, bool close) {
+    Bend handle_bend(Progress& walk, double length, bool close) {
         const bool corner = close && length < corner_step;
         const bool stalls = length / 2 <= shortest_step || walk.creeps > most_creeps;
         if ((corner || stalls) && walk.corners < most_corners && round_corner(walk.now, walk.ahead, length)) {

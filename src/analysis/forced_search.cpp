@@ -127,13 +127,13 @@ std::optional<Closed> ClosedSearch::follow(Return first, const std::vector<int>&
             seen_.push_back(std::move(next));
         }
         for (const double near : {1e-5, 5e-2}) {
-            if (auto found = closes(near)) return found;
+            if (auto found = find_closed(near)) return found;
         }
     }
     return {};
 }
 
-std::optional<Closed> ClosedSearch::closes(double near) {
+std::optional<Closed> ClosedSearch::find_closed(double near) {
     const std::size_t last = seen_.size() - 1;
     int tries = 0;  // chaotic motions come near to themselves repeatedly
     for (std::size_t m = 1; tries < 4 && m <= static_cast<std::size_t>(longest_) && 2 * m <= last; ++m) {

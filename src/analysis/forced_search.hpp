@@ -98,7 +98,7 @@ private:
         bool keeps_mode() const { return back.mode == mode; }
     };
 
-    std::optional<Closed> closes(double near);
+    std::optional<Closed> find_closed(double near);
     Closed shortest(Closed found);
     bool approaches(const Eigen::VectorXd& x, std::size_t m) const;
     std::optional<Closed> itself(const Return& from, int m);

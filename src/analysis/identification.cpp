@@ -117,11 +117,11 @@ public:
             }
         }
         if (!best_) return text::Error{"no motion of such a system comes near this record"};
-        if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_let_go(starts);
+        if (!question_.M && !stopped_ && leaves_pattern(suspected)) try_from_rest(starts);
         if (!question_.M && !stopped_) try_rests();
         if (question_.M) {
             starts.insert(starts.begin(), filled_best());
-            try_let_go(starts);
+            try_from_rest(starts);
         }
         if (question_.M && !stopped_) try_jumps();
         if (question_.M && !stopped_ && leaves_pattern(suspected)) try_other_valleys();
@@ -288,7 +288,7 @@ private:
     }
 
     /// Also searches from initial velocity 0, because a search may end at a velocity that decays between two samples.
-    void try_let_go(const std::vector<Parameters>& starts) {
+    void try_from_rest(const std::vector<Parameters>& starts) {
         if (question_.given.velocity0) return;
         const Eigen::Index place = place_of(Unknown::velocity0);
         for (const Parameters& start : starts) {
@@ -750,7 +750,7 @@ private:
 
     /// Selects the most probable way to rest. Its covariance, in units of noise squared, includes the uncertainty due
     /// to the other ways.
-    [[nodiscard]] Rest weigh_rests() {
+    [[nodiscard]] Rest choose_rest() {
         base_ = best_->base;
         const double noise = deviation(), least = best_->sum;
         Rest best{freest_.value_or(*best_), best_->breakaway, best_->rest};
@@ -853,7 +853,7 @@ private:
 
     [[nodiscard]] Identified result() {
         Identified found;
-        const Rest weighed = weigh_rests();
+        const Rest weighed = choose_rest();
         Covariance covariance = weighed.covariance;
         breakaway_ = best_->breakaway;
         found.value = best_filled_ = filled_best();
@@ -958,7 +958,8 @@ private:
         return all;
     }
 
-    /// Corrects the offset to that of the first time if the zero drifts steadily, and its error. Returns the change.
+    /// Corrects the offset to its value at the first time, in case the zero drifts steadily, and widens its error.
+    /// Returns the change of all parameters; empty if no offset is fitted.
     Eigen::VectorXd allow_for_drift(const Eigen::MatrixXd& J, const NoiseMemory& memory, const Eigen::VectorXd& wider,
                                     Covariance& covariance, Identified& found) const {
         const Eigen::Index zero = place_of(Unknown::offset);

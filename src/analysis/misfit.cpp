@@ -191,7 +191,7 @@ public:
     /// The fraction of a column's length that is orthogonal to the eliminated columns.
     double own(Eigen::Index i) const { return std::sqrt(std::max(0.0, left_(i, i)) / whole_[i]); }
     [[nodiscard]] double operator()(Eigen::Index i, Eigen::Index j) const { return left_(i, j); }
-    void take_out(Eigen::Index i) {
+    void eliminate(Eigen::Index i) {
         constexpr double dependent = 1e-6;
         if (!(own(i) > dependent)) return;
         const Eigen::VectorXd column = left_.col(i);
@@ -229,7 +229,7 @@ Regression regression(const Eigen::MatrixXd& columns, const Eigen::VectorXd& y) 
 }
 
 /// The standard deviation of the numbers around each place.
-Eigen::VectorXd loudness(const Eigen::VectorXd& numbers) {
+Eigen::VectorXd local_deviation(const Eigen::VectorXd& numbers) {
     constexpr Eigen::Index around = 20;
     const Eigen::Index n = numbers.size();
     Eigen::VectorXd found(n);
@@ -253,7 +253,7 @@ public:
           terms_(structure.columns.cols()),
           last_(first_ + terms_ + structure.faster.cols()),
           products_(products(residual, noise, columns, slopes, structure)) {
-        for (Eigen::Index i = 0; i < first_; ++i) products_.take_out(i);
+        for (Eigen::Index i = 0; i < first_; ++i) products_.eliminate(i);
         double squares = 0;
         for (Eigen::Index i = first_ + terms_; i < last_; ++i) squares += score(i) * score(i);
         const auto fast = static_cast<double>(structure.faster.cols());
@@ -267,7 +267,7 @@ public:
             if (which < 0) break;
             if (found_.empty()) most_ = most;
             found_.push_back(which - first_);
-            products_.take_out(which);
+            products_.eliminate(which);
         }
     }
 
@@ -285,7 +285,7 @@ private:
             // A longer memory would also take a nearly periodic misfit for noise.
             all = NoiseMemory(regression(known, residual).rest, columns, known, 1).whitened(all);
         }
-        if (noise.is_uneven) all = loudness(all.col(all.cols() - 1)).cwiseInverse().asDiagonal() * all;
+        if (noise.is_uneven) all = local_deviation(all.col(all.cols() - 1)).cwiseInverse().asDiagonal() * all;
         return Products(all);
     }
 

@@ -171,7 +171,7 @@ Eigen::Matrix2d PeriodMap::free_motion(double length) const {
     return matrix;
 }
 
-/// The limit of M' from the left, as seen by the breakaway.
+/// The limit from the left of M', which determines a breakaway at t.
 double PeriodMap::slope_before(double t) const {
     const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
     const double now = drive_.M().value_before(t), one = drive_.M().value(t - h), two = drive_.M().value(t - 2 * h);

@@ -59,7 +59,7 @@ struct Swings {
     double span = 0;                     ///< length of a span, time units
 };
 
-/// `period` is that of M, or 0.
+/// `period` is the period of M, or 0.
 Swings swings(const std::vector<Stretch>& stretches, double period);
 
 /// The lag of theta's fundamental behind that of M over the period of M before `until`, rad, from -pi/2 to 3 pi/2.

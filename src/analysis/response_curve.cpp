@@ -24,9 +24,9 @@ public:
     ResponseCurve found() {
         sweep();
         for (std::size_t i = 0; i < curve_.jumps.size() && i < most_jumps && !stopped(); ++i) go_on_from(i);
-        follow_births();
+        follow_new_branches();
         if (walked_ && !stopped()) search_from_far_end();
-        follow_births();
+        follow_new_branches();
         std::ranges::stable_sort(curve_.jumps, {}, &MotionJump::parameter);
         return std::move(curve_);
     }
@@ -146,7 +146,7 @@ private:
     }
 
     /// Follows the branches that begin at points of others: limit cycles and, if requested, doublings.
-    void follow_births() {
+    void follow_new_branches() {
         for (; seen_ < std::min(curve_.branches.size(), most_born); ++seen_) {
             const std::vector<BranchPoint> points = curve_.branches[seen_];
             for (const BranchPoint& point : points) {
@@ -154,16 +154,16 @@ private:
                 if (point.kind == BranchKind::hopf && !ends_at(point)) {
                     const auto circuit =
                         circuit_of_first_cycles(question_.family, point.parameter, point.motion, monitor_);
-                    if (circuit) add_born(point, *circuit, walk_up(*circuit, sorted_, point.parameter));
+                    if (circuit) add_new_branch(point, *circuit, walk_up(*circuit, sorted_, point.parameter));
                 }
                 if (point.kind == BranchKind::doubling && question_.doubled) {
                     const auto circuit = circuit_of(point.parameter, point.motion, 2 * point.motion.periods);
-                    if (circuit) add_born(point, *circuit, walk_aside(*circuit, sorted_, point.parameter));
+                    if (circuit) add_new_branch(point, *circuit, walk_aside(*circuit, sorted_, point.parameter));
                 }
             }
         }
     }
-    void add_born(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
+    void add_new_branch(const BranchPoint& point, const Circuit& circuit, BranchPath path) {
         note_outcome(circuit);
         if (path.points.size() < 2) return;
         // The smallest cycles practically coincide with the Hopf point.

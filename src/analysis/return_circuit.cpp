@@ -90,7 +90,7 @@ public:
         motion.by_returns.drive = std::make_shared<const model::Drive>(here.runs.from(begin, start(here)));
         if (stands_) {
             const auto velocity = begin.y.segment(here.runs.bodies(), here.runs.bodies());
-            const bool rotates = chart_->any_goes_round() && velocity.cwiseAbs().maxCoeff() > 0;
+            const bool rotates = chart_->any_rotates() && velocity.cwiseAbs().maxCoeff() > 0;
             motion.status = rotates ? SteadyStatus::steady : SteadyStatus::rest;
             motion.bodies = bodies_at(begin.y, *chart_, here.runs.bodies());
             motion = seen_from(here.question, motion, {});
@@ -211,7 +211,7 @@ private:
         for (std::size_t j = 0; j < joints.size(); ++j) {
             const auto body = static_cast<Eigen::Index>(joints[j].first());
             const bool sticks = joints[j].of.size() == 1 && run.left->carry->mode.holds(j);
-            if (sticks && !chart_->goes_round(body) && range[body] <= creep * range.maxCoeff()) held.push_back(body);
+            if (sticks && !chart_->rotates(body) && range[body] <= creep * range.maxCoeff()) held.push_back(body);
         }
         return held;
     }

@@ -70,7 +70,7 @@ private:
     bool complete(const Closed& found, bool any) override { return complete_closed(*returns_, found, any); }
     bool is_bounded() const override { return false; }
     bool is_free() const override {
-        if (chart_.any_goes_round()) return true;
+        if (chart_.any_rotates()) return true;
         return question().is_alone() && chart_.measures(0) && !(runs_.natural_period() > 0) &&
                question().body.spring().none() && !question().body.walls();
     }
@@ -417,7 +417,7 @@ void ReturnSearch::cycle() {
         const VectorXd range = reach.range();
         most_changed = i == 0 ? range : VectorXd(most_changed.cwiseMax(range));
         // Velocities show whether rotating bodies are driven faster and faster.
-        ranges.emplace_back(time, greatest(reach, chart_.any_goes_round() ? 2 * n() : n()));
+        ranges.emplace_back(time, greatest(reach, chart_.any_rotates() ? 2 * n() : n()));
         largest_ = std::max(largest_, greatest(reach, 2 * n()));
         now = Runs::at_stop(*run);
         if (rests(*run, range, most_changed)) return;
@@ -493,7 +493,7 @@ bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) 
     facts.period = forced ? found.returns * question().repeats.period : found.period;
     facts.stable = true;
     constexpr double smooth = 0.01;
-    const bool alone = forced && !chart_.any_goes_round();
+    const bool alone = forced && !chart_.any_rotates();
     if (D) judge(question(), multipliers_of(D->by_place), {.alone = alone && D->bend < smooth}, facts);
     if (!facts.stable && !any) return false;
     const SteadyMotion before = std::exchange(facts_, std::move(facts));
@@ -510,7 +510,7 @@ bool ReturnSearch::complete_closed(Returns& map, const Closed& found, bool any) 
 
 /// Sets `symmetric` if all angles and velocities are opposite half a period later.
 void ReturnSearch::note_symmetry(const VectorXd& begin, const VectorXd& middle) {
-    if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_goes_round()) return;
+    if (question().repeats.period == 0 || facts_.periods != 1 || chart_.any_rotates()) return;
     VectorXd units = VectorXd::Ones(2 * n());
     units.tail(n()).fill(2 * std::numbers::pi / facts_.period);
     const auto size = [&](const VectorXd& y) { return y.cwiseQuotient(units).cwiseAbs().maxCoeff(); };
@@ -526,7 +526,7 @@ SteadyMotion ReturnSearch::found() {
     } else if (question().repeats.period > 0) {
         const auto last = search(question(), contracts(question()));
         if (last) look_beside(*last, question().periods);
-        if (facts_.status == SteadyStatus::grows && chart_.any_goes_round()) facts_.growth = model::never;
+        if (facts_.status == SteadyStatus::grows && chart_.any_rotates()) facts_.growth = model::never;
     } else {
         cycle();
     }
@@ -603,7 +603,7 @@ void ReturnSearch::complete_rest(const motion::Run& run, bool stands) {
     if (!stands && grows_beside(now, run.t_stop)) facts_.stable = false;
     const bool moves = is_moving(now);
     const bool stuck = n() == 1 && run.motion_at_stop == model::Motion::stuck;
-    if (moves && (stuck || chart_.any_goes_round()))
+    if (moves && (stuck || chart_.any_rotates()))
         facts_.status = SteadyStatus::steady;  // for example carried by a belt
     if (stands) facts_.unique = false;
     facts_.stuck = (n() == 1 ? stuck : stands) ? 1 : 0;

@@ -273,7 +273,7 @@ Eigen::MatrixXd Runs::allowed(const HeldMode& mode, Index size) const {
     return basis.columns.rightCols(size - basis.rank);
 }
 
-bool Chart::any_goes_round() const {
+bool Chart::any_rotates() const {
     return std::ranges::any_of(from_, [](Index from) { return from >= 0; });
 }
 
@@ -441,7 +441,7 @@ Reach reach_of_rows(const motion::Run& run, const Chart& chart) {
         reach.low = reach.low.cwiseMin(x);
         reach.high = reach.high.cwiseMax(x);
     }
-    // Turns are between the rows.
+    // Events are included because turns may lie between the rows.
     for (const model::Event& event : run.events) {
         if (reach.low.size() == 0 || event.t < run.t_start || event.t > run.t_stop) continue;
         const VectorXd x = chart.measured(vector_of(run.left->history->at(event.t))).head(2 * n);
@@ -472,7 +472,7 @@ std::vector<BodyMotion> bodies_of(const motion::Run& run, const Chart& chart, co
     for (Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double fastest = std::max(std::fabs(reach.low[n + i]), std::fabs(reach.high[n + i]));
-        const double turned = chart.goes_round(i) ? run.left->carry->y[k] - before[k] : 0;
+        const double turned = chart.rotates(i) ? run.left->carry->y[k] - before[k] : 0;
         const bool turns = std::fabs(turned) > 1e-6 * (run.t_stop - run.t_start) * fastest;
         bodies.push_back({reach.low[i], reach.high[i], turns ? turned : 0, before[k]});
     }
@@ -482,7 +482,7 @@ std::vector<BodyMotion> bodies_of(const motion::Run& run, const Chart& chart, co
 std::vector<BodyMotion> bodies_at(const VectorXd& y, const Chart& chart, Index n) {
     const VectorXd at = chart.measured(y);
     std::vector<BodyMotion> bodies;
-    for (Index i = 0; i < n; ++i) bodies.push_back({at[i], at[i], chart.goes_round(i) ? y[n + i] : 0, y[i]});
+    for (Index i = 0; i < n; ++i) bodies.push_back({at[i], at[i], chart.rotates(i) ? y[n + i] : 0, y[i]});
     return bodies;
 }
 

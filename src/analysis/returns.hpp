@@ -63,9 +63,9 @@ public:
     bool measures(Eigen::Index k) const {
         return k >= static_cast<Eigen::Index>(from_.size()) || from_[static_cast<std::size_t>(k)] != k;
     }
-    bool goes_round(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
+    bool rotates(Eigen::Index body) const { return from_[static_cast<std::size_t>(body)] >= 0; }
     std::size_t bodies() const { return from_.size(); }
-    bool any_goes_round() const;
+    bool any_rotates() const;
     /// The measured numbers of all of y; 0 for angles that are not measured.
     Eigen::VectorXd measured(const Eigen::VectorXd& y) const;
     /// The reverse of measured(); `there` provides the angles that are not measured.

@@ -249,8 +249,8 @@ private:
         return -stick->y - y;
     }
 
-    /// The root of off() by secants. The last step is not checked, as its error is a product of the last two residuals.
-    /// Callers prove the result, so a slow search is left to them.
+    /// Finds the root of off() by secants; empty if the search is slow. The last step is not checked, as its error is a
+    /// product of the last two residuals, and callers prove the result.
     std::optional<double> place_of_rest(const Stick& a, const Stick& b, std::size_t n) {
         constexpr double rounding = 1e-17;
         constexpr int most = 12;

@@ -1303,7 +1303,7 @@ std::vector<std::string> silent_names(const FitAnswer& fit) {
     return names_of_pairs(fit.silent);
 }
 
-/// The errors that are not withheld, of values that the record determines.
+/// The errors of the values that the record determines, as far as they are not withheld (nan).
 std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
     auto errors = fit.errors;
     std::erase_if(errors, [&fit](const auto& error) {

@@ -165,9 +165,9 @@ int push_loaded_data(lua_State* L, files::ReadColumns content) {
 /// times that do not decrease.
 bool is_run(const files::ReadColumns& content) {
     const auto finite = [](const files::ReadColumn& column) { return column.fault.empty(); };
-    const bool of_one = std::ranges::none_of(
+    const bool only_one_body = std::ranges::none_of(
         content.columns, [](const auto& column) { return column.name.find('.') != std::string::npos; });
-    const bool saved = of_one && !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
+    const bool saved = only_one_body && !content.comments.empty() && content.comments.front().starts_with("-- dinal ");
     return (saved || (has_column(content, "t") && has_column(content, "theta"))) &&
            std::ranges::all_of(content.columns, finite) && !earlier_row(content);
 }

@@ -669,12 +669,12 @@ void apply_options(lua_State* L, const lua::Options& options, std::vector<plots:
         if (&figure != &figures.back()) figure.x.label.clear();
     }
     if (figures.size() > 1) {
-        for (const char* of_one : {"ylim", "yticks", "ylog", "equal"}) {
-            if (options.has(of_one)) {
-                options.fail(of_one,
+        for (const char* name : {"ylim", "yticks", "ylog", "equal"}) {
+            if (options.has(name)) {
+                options.fail(name,
                              "{} is for one unit, and these columns have {}: give ylabel to draw them on one axis, or "
                              "draw them one by one",
-                             of_one, figures.size());
+                             name, figures.size());
             }
         }
     }

@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* example = "for i in progress(100, \"sweep\") do ... end";
 
-/// The state of such a loop. Its user value is the list it iterates, if any.
+/// The state of a loop over progress(...). Its user value is the list it iterates, if any.
 struct Loop {
     std::unique_ptr<terminal::Progress> progress;  // null when the loop has ended
     lua_Integer steps = 0;

@@ -63,7 +63,7 @@ double usual_dt(const motion::Window& window, double natural_period) {
 }
 
 /// The drive with M as native terms if its functions can be read; used for the choice of the integrator.
-model::Drive played_drive(lua_State* L, const source::Task& task) {
+model::Drive drive_of_terms(lua_State* L, const source::Task& task) {
     model::Drive played = task.drive;
     if (auto terms = terms_alone(L, *task.system, task.drive, task.window.start, task.window.end)) {
         played.loads = {*terms};
@@ -86,7 +86,7 @@ source::Task asked_task(lua_State* L, const lua::Options& options, const RunOpti
     task.window.end = asked.t_end ? *asked.t_end : *std::max_element(asked.times.begin(), asked.times.end());
     task.integrator = integrator != nullptr ? *integrator
                       : system->is_alone()
-                          ? motion::integrator_for(model::oscillator_at(*system, 0).value(), played_drive(L, task))
+                          ? motion::integrator_for(model::oscillator_at(*system, 0).value(), drive_of_terms(L, task))
                           : motion::Spectral{};
     if (!options.has("times") && task.window.end > task.window.start) {
         task.rows = motion::Grid::every(asked.dt.value_or(usual_dt(task.window, system->shortest_natural_period())));
@@ -197,7 +197,7 @@ std::string readings_of(const model::System& system, const model::Drive& drive, 
     return all;
 }
 
-bool sees_all(const model::System& system, const model::Drive& drive, bool located) {
+bool reads_all_functions(const model::System& system, const model::Drive& drive, bool located) {
     bool all = true;
     const auto see = [&](const model::UserFunction& function) {
         if (dynamic_cast<const model::SampledController*>(&function) != nullptr) return;  // nothing between instants
@@ -269,7 +269,7 @@ int run_task(lua_State* L, const lua::Options& options, source::Origin origin, d
         run->result.outcome = model::Outcome::interrupted;  // M was stopped, it did not fail
     }
     run->readings = readings_of(system, asked.drive, run->result.located, run->terms.has_value());
-    if (sees_all(system, asked.drive, run->result.located)) run->result.gap = run->result.unproven;
+    if (reads_all_functions(system, asked.drive, run->result.located)) run->result.gap = run->result.unproven;
     const bool interrupted = run->result.outcome == model::Outcome::interrupted;
     push_run(L, run);
     memories.note(run.get());

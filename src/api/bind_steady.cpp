@@ -89,14 +89,14 @@ bool is_moving(const Steady& s) {
 }
 
 /// Returns s; raises an error if it is the motion of several bodies.
-const Steady& of_one(lua_State* L, const Steady& s) {
+const Steady& only_one_body(lua_State* L, const Steady& s) {
     if (!s.of_all()) return s;
     lua::raise(L, "this motion has several bodies; choose one of them, such as s.{}.amplitude",
                s.question.system->bodies.front().name);
 }
 
 const analysis::SteadyShape& steady_shape(lua_State* L, const SteadyHandle& s) {
-    of_one(L, *s);
+    only_one_body(L, *s);
     if (!s->shape) {
         call_checked(L, s->question, [&](const motion::Monitor& monitor) {
             s->shape = analysis::shape_of(s->question, s->motion, monitor);
@@ -131,7 +131,7 @@ auto found_fact(const Steady& s) {
 
 template <auto fact>
 auto fact_of_one(lua_State* L, const SteadyHandle& s) {
-    return found_fact<fact>(of_one(L, *s));
+    return found_fact<fact>(only_one_body(L, *s));
 }
 
 std::optional<double> steady_period(const Steady& s) {
@@ -150,7 +150,7 @@ std::optional<double> steady_shape_angle(lua_State* L, const SteadyHandle& s) {
 }
 
 std::optional<std::size_t> steady_stops(lua_State* L, const SteadyHandle& s) {
-    return is_moving(of_one(L, *s)) ? std::optional(s->motion.stops) : std::nullopt;
+    return is_moving(only_one_body(L, *s)) ? std::optional(s->motion.stops) : std::nullopt;
 }
 
 std::optional<double> steady_growth(const Steady& s) {
@@ -162,7 +162,7 @@ lua::Pushed steady_rest(lua_State* L, const SteadyHandle& s) {
         lua_pushnil(L);
         return {};
     }
-    const analysis::SteadyMotion& motion = of_one(L, *s).motion;
+    const analysis::SteadyMotion& motion = only_one_body(L, *s).motion;
     lua::push_value(L, std::array{motion.rest.first, motion.rest.second});
     lua::set_value(L, "lower", motion.rest.first);
     lua::set_value(L, "upper", motion.rest.second);
@@ -196,7 +196,7 @@ std::optional<std::vector<SteadyHandle>> steady_others(lua_State* L, const Stead
 }
 
 /// The motion as seen from the only body of a system, if it has only one.
-SteadyHandle of_only(const SteadyHandle& s) {
+SteadyHandle seen_from_only_body(const SteadyHandle& s) {
     return s->of_all() && s->question.system->joints.size() == 1 ? seen_from(s, 0) : s;
 }
 
@@ -208,15 +208,15 @@ std::string steady_story(lua_State* L, const SteadyHandle& s) {
     }
     std::vector<analysis::OtherMotion> others;
     for (const SteadyHandle& one : found) {
-        const SteadyHandle other = of_only(one);
+        const SteadyHandle other = seen_from_only_body(one);
         others.push_back({other->question, other->motion});
     }
-    const SteadyHandle own = of_only(s);
+    const SteadyHandle own = seen_from_only_body(s);
     return analysis::description_of(own->question, own->motion, steady_shape(L, own), others);
 }
 
 std::string steady_summary(lua_State*, const SteadyHandle& handle) {
-    const SteadyHandle own = of_only(handle);
+    const SteadyHandle own = seen_from_only_body(handle);
     const Steady& s = *own;
     const analysis::SteadyMotion& m = s.motion;
     const ColumnUnits in(s.question.system->units);

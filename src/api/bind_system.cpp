@@ -355,10 +355,10 @@ const char* varying_option(lua_State* L) {
 /// Pushes a field of a named system: a body or a link.
 int field_of_names(lua_State* L, const model::System& system, std::string_view name) {
     if (const auto own = system.joint_named(name)) return push_alone(L, fmt::format("sys.{}", name), system, *own);
-    const bool of_one = std::ranges::any_of(system_class.members, [&](const auto& member) {
+    const bool only_one_body = std::ranges::any_of(system_class.members, [&](const auto& member) {
         return member.name == name && member.kind == lua::Kind::field && !is_of_whole(name);
     });
-    if (of_one) {
+    if (only_one_body) {
         lua::raise(L, {.sentence = fmt::format("{0} is of one body or link: sys.{1}.{0}", name, system.joints[0].name),
                        .culprit = std::string(name)});
     }

@@ -39,7 +39,7 @@ std::size_t joint_named(lua_State* L, std::string_view name, const model::System
 
 /// Returns whether all functions were read as formulas, so that only pulses reported by the engine may be missed.
 /// `located`: conditions on the motion were located.
-[[nodiscard]] bool sees_all(const model::System& system, const model::Drive& drive, bool located);
+[[nodiscard]] bool reads_all_functions(const model::System& system, const model::Drive& drive, bool located);
 
 /// Sentences on the evaluation of each function in M, belt and base. `native`: M was replaced by a sum of native terms.
 [[nodiscard]] std::string readings_of(const model::System& system, const model::Drive& drive, bool located,

@@ -110,7 +110,7 @@ inline constexpr text::Call save_call{"run:save", "run:save(\"run.csv\", { colum
 int save_run(lua_State* L);
 /// run:continue{ t_end }.
 int continue_run(lua_State* L);
-/// run:explain() of a simulated run, and run:energy(), in bind_energy.cpp.
+/// run:explain() of a simulated run, and run:energy(); both are defined in bind_energy.cpp.
 std::string story_of_simulated(lua_State* L, const RunHandle& run);
 lua::Pushed energy_of_run(lua_State* L, const RunHandle& run);
 /// run:at(t), run.states and run.acceleration.

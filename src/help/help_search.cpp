@@ -148,7 +148,7 @@ std::string_view last_name(std::string_view words) {
     return separator == std::string_view::npos ? "" : words.substr(separator + 1);
 }
 
-std::string no_help(std::string_view words) {
+std::string nothing_found(std::string_view words) {
     std::string hint = similar_name_hint(words);
     if (hint.empty() && !last_name(words).empty()) hint = similar_name_hint(last_name(words));  // run.enrgy
     const std::string shown = text::quoted(words);  // control characters would steer the terminal
@@ -506,7 +506,7 @@ std::string help_about(std::string_view words, const terminal::Display& screen) 
     for (const std::string_view word : words_of(rest)) {
         if (about.empty() && found.empty()) about = lua_word(word);
     }
-    if (about.empty() && found.empty()) return no_help(rest.empty() ? words : rest);
+    if (about.empty() && found.empty()) return nothing_found(rest.empty() ? words : rest);
     return about + (about.empty() || found.empty() ? "" : "\n") + found;
 }
 

@@ -1,4 +1,4 @@
-// The list of everything that Lua sees: that of api/classes.hpp, then the rooms above.
+// The list of everything that Lua sees: the list in api/classes.hpp, then the rooms above.
 #include "help/library.hpp"
 
 #include <fmt/format.h>

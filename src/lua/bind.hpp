@@ -85,7 +85,7 @@ struct Class {
     /// Called with (object, key) for a number key, and for strings that name no member. Pushes one value and returns 1,
     /// or returns 0 for "no such field", which becomes an error with a suggestion.
     lua_CFunction other_keys = nullptr;
-    /// Returns the prompt's text for the object at `index`; by default that of tostring.
+    /// Returns the prompt's text for the object at `index`; by default the text of tostring.
     std::string (*card)(lua_State* L, int index, const terminal::Display& screen) = nullptr;
     /// Like other_keys, for strings that take precedence over members.
     lua_CFunction first_keys = nullptr;

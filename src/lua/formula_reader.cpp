@@ -1221,7 +1221,7 @@ private:
         way[a] = {.kind = Known::Kind::number, .constant = false};
     }
 
-    // ---- the end
+    // ---- the resulting formula
 
     model::Formula formula() {
         const std::size_t states = arguments_.state_count();

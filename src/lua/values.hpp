@@ -31,8 +31,8 @@ using NamedNumbers = std::vector<std::pair<const char*, double>>;
 /// with equal names share it.
 void note_order(lua_State* L, const NamedNumbers& numbers);
 
-/// Pushes a number, a flag, a text, a list of such, a table of such by name, or an object of a class; nil for an empty
-/// optional.
+/// Pushes a number, a flag, a text, a list of these, a table of these by name, or an object of a class; nil for an
+/// empty optional.
 template <class Value>
 void push_value(lua_State* L, const Value& value) {
     if constexpr (std::is_same_v<Value, Pushed>) {

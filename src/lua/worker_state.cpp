@@ -28,7 +28,7 @@ int open_worker(lua_State* L) {
     lua_setfield(L, LUA_REGISTRYINDEX, "LUA_NOENV");
     safe_mode() ? open_safe_libraries(L) : luaL_openlibs(L);
     open_ours.load()(L);
-    lua_gc(L, LUA_GCGEN, 0, 0);  // as in the program
+    lua_gc(L, LUA_GCGEN, 0, 0);  // generational, as in the program
     return 0;
 }
 

@@ -244,7 +244,7 @@ double Formula::period() const {
 
 namespace {
 
-/// The excitation evaluated at a time of slope 1, as a sum.
+/// Returns the excitation evaluated at `time` as a sum, if the time is t plus a constant; otherwise empty.
 std::optional<TermSum> delayed(const Excitation& excitation, const TermSum& time, double from) {
     if (!time.is_line() || time.power(1) != 1) return {};
     const double by = from - time.power(0);

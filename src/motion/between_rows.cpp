@@ -138,7 +138,7 @@ Run BetweenRows::drawn(double from, double to, const Monitor& monitor) const {
         const auto column = static_cast<Eigen::Index>(c);
         const auto place = std::ranges::find(columns_, column);
         for (std::size_t i = 0; i < times.size(); ++i) {
-            table.writable()[c * times.size() + i] =
+            table.writable_values()[c * times.size() + i] =
                 names[c] == "t"           ? times[i]
                 : place != columns_.end() ? values[i * width + static_cast<std::size_t>(place - columns_.begin())]
                                           : interpolated(column, times[i]);

@@ -21,7 +21,7 @@ template <class T>
 class Growing {
 public:
     Growing() = default;
-    /// Rows to be filled through `writable`.
+    /// Rows to be filled through `writable_values`.
     Growing(std::size_t rows, std::size_t columns) : store_(Store::with_room(rows, columns)), size_(rows) {
         store_->used = rows;
     }
@@ -61,7 +61,7 @@ public:
     auto end() const { return column(0).end(); }
 
     /// Pointer to the values of a new table. Must not be used on shared rows.
-    [[nodiscard]] T* writable() { return store_ == nullptr ? nullptr : store_->values; }
+    [[nodiscard]] T* writable_values() { return store_ == nullptr ? nullptr : store_->values; }
 
     /// The first `kept` rows followed by those of `later`. New memory reserves room for at most as many rows again, up
     /// to `most` in total.

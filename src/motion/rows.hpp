@@ -55,7 +55,7 @@ public:
     RowWriter(const model::Oscillator& system, const Grid& grid, Run& run)
         : grid_(grid), run_(run), damping_(system.damping()) {
         Growing<double> table(grid.count(), column_count);
-        column_ = table.writable();
+        column_ = table.writable_values();
         run.rows = Rows(std::move(table));
         set_next();
     }

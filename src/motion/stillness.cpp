@@ -65,7 +65,7 @@ void settle(Run& run, const model::Oscillator& system, const model::Drive& drive
     if (stop == no_stop) return;
     const auto events = run.events.column(0);
     if (run.events.own_bytes() > 0) {  // not shared with others
-        run.events.writable()[stop].kind = model::EventKind::rest;
+        run.events.writable_values()[stop].kind = model::EventKind::rest;
         return;
     }
     std::vector<model::Event> last(events.begin() + static_cast<std::ptrdiff_t>(stop), events.end());

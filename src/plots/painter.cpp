@@ -284,8 +284,8 @@ private:
                 const bool nothing = absent.nothing && z == 0;
                 std::uint32_t colour = hatch(row, column, nothing);
                 if (band && !nothing) {
-                    colour =
-                        range ? flowing_colour((z - range->low) / range->length()) : shade_colour(*band, bands.size());
+                    colour = range ? continuous_colour((z - range->low) / range->length())
+                                   : shade_colour(*band, bands.size());
                 }
                 map.set(row, column, colour);
             }
@@ -596,7 +596,7 @@ private:
             const double part = static_cast<double>(i) / std::max(1.0, static_cast<double>(colours.cells) - 1);
             const double below = colours.continuous && i > 0 ? 0.5 : 0;  // avoids seams
             page_.rectangle({colours.left, y - cell}, {colours.right, y + below},
-                            colours.continuous ? flowing_colour(part) : shade_colour(i, colours.cells));
+                            colours.continuous ? continuous_colour(part) : shade_colour(i, colours.cells));
         }
         for (const auto& [place, text] : colours.labels) {
             page_.words({text, colours.right + 0.4 * em, panel_.bottom - place * cell}, Align::left);

@@ -97,7 +97,7 @@ bool is_excited(const RunData& run, std::string_view name) {
     return M && run.result->size() > 0 && run.result->rows.col(*M).cwiseAbs().maxCoeff() > 0;
 }
 
-/// The default columns of other tables: the second over the first.
+/// The columns of y by default: theta, and M/k if M acts; in a table without theta, the first column other than x.
 std::vector<std::string> usual_columns(const RunData& run, std::string_view x) {
     if (!has(run, "theta")) {
         const auto& names = run.result->names();
@@ -312,7 +312,8 @@ namespace {
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
-/// Rates a body as the first of the row: 2 if it is an end that is never second in a link, 1 if it is an end.
+/// Returns how well a body begins the row: 2 for an end of a chain that is never second in a link, 1 for another end,
+/// otherwise 0.
 int merit(std::size_t body, std::span<const Pair> links) {
     const auto named =
         std::ranges::count_if(links, [body](const Pair& link) { return link.first == body || link.second == body; });

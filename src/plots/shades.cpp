@@ -120,7 +120,7 @@ constexpr std::array<std::uint32_t, 10> viridis{0x440154, 0x482878, 0x3E4A89, 0x
                                                 0x1F9E89, 0x35B779, 0x6DCD59, 0xB4DE2C, 0xFDE725};
 }  // namespace
 
-std::uint32_t flowing_colour(double part) {
+std::uint32_t continuous_colour(double part) {
     const double place = std::clamp(part, 0.0, 1.0) * static_cast<double>(viridis.size() - 1);
     const std::size_t before = std::min(static_cast<std::size_t>(place), viridis.size() - 2);
     const double weight = place - static_cast<double>(before);

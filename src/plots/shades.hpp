@@ -48,7 +48,7 @@ std::optional<std::size_t> value_at(const std::vector<double>& edges, double pla
 /// From dark 0x440154 to bright 0xFDE725; legible for the colour-blind and in greyscale.
 std::uint32_t shade_colour(std::size_t band, std::size_t count);
 /// The colour for a fraction from 0 to 1, by interpolation.
-std::uint32_t flowing_colour(double part);
+std::uint32_t continuous_colour(double part);
 /// The character of a band: its digit if all are digits, otherwise a shade.
 std::string_view shade_letter(const std::vector<ShadeBand>& bands, std::size_t band, bool ascii);
 inline constexpr int most_text_bands = 5, most_paper_bands = 10;

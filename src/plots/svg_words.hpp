@@ -14,7 +14,7 @@ std::string title_of(std::span<const Figure> figures);
 /// The SVG of these figures with title, description and label for screen readers.
 std::string with_words(std::string svg, std::span<const Figure> figures);
 
-/// The <svg> element of such a file for a page: without its head, and with unique identifiers.
+/// The <svg> element of an SVG file, to be put into a page: without the file's head, and with unique identifiers.
 std::string element_of(std::string svg);
 
 }  // namespace dinal::plots

@@ -17,7 +17,7 @@ namespace {
 constexpr double longest = 1e8;                         // seconds: 3 years
 constexpr std::size_t largest = std::size_t{1} << 40U;  // a terabyte
 
-/// "10", "0.5"; 0 if it is not a positive number.
+/// Parses seconds, "10" or "0.5"; returns 0 if the text is not a positive number.
 double seconds_of(std::string_view text) {
     double seconds = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), seconds);
@@ -25,7 +25,7 @@ double seconds_of(std::string_view text) {
     return good && seconds > 0 && seconds <= longest ? seconds : 0;
 }
 
-/// "256M", "1G", "500K", "1000000"; 0 if it is not a size.
+/// Parses a size in bytes, "256M", "1G", "500K" or "1000000"; returns 0 if the text is not a size.
 std::size_t size_of(std::string_view text) {
     std::size_t size = 0;
     const auto parsed = std::from_chars(text.data(), text.data() + text.size(), size);

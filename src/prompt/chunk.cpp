@@ -39,7 +39,7 @@ bool loads(lua_State* L, const std::string& text) {
 }
 
 /// Returns whether a string continues on the next line: "...\\" or "...\\z  ".
-bool goes_on(std::string_view text) {
+bool string_continues(std::string_view text) {
     if (text.ends_with('\\')) {
         return true;
     }
@@ -51,7 +51,7 @@ bool goes_on(std::string_view text) {
 bool ended_early(lua_State* L, std::string_view chunk) {
     const std::string_view message = lua::text_at(L, -1);
     // A quoted string ends on its line unless a backslash escapes the newline.
-    return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || goes_on(chunk));
+    return lua::is_about_end(message) && (!lua::is_about_unfinished_string(message) || string_continues(chunk));
 }
 
 std::string returned(std::string_view expression) {
@@ -220,7 +220,7 @@ int print_partial(lua_State* L) {
     return 0;
 }
 
-/// Shows the values above `base` with one of the two functions above, which pop them.
+/// Calls `function` with the values above `base` to show them; pops them.
 void show_by(lua_State* L, lua_CFunction function, int base) {
     luaL_checkstack(L, LUA_MINSTACK, "too many values to show");
     lua_pushcfunction(L, function);

@@ -21,7 +21,7 @@ struct Chunk {
     std::string waits = {};  ///< if incomplete: "'for' of line 1 waits for 'end'"
 };
 
-/// The name of such chunks in messages: "input:1: ...".
+/// The chunk name of prompt input, which begins messages: "input:1: ...".
 inline constexpr const char* prompt_chunk = "=input";
 
 Chunk compile(lua_State* L, const std::string& text);

@@ -42,7 +42,7 @@ struct OpenCall {
     std::string_view option = {};              ///< the option whose value contains the cursor
 };
 
-/// The text before the cursor, to which it refers.
+/// Analyses the text before the cursor, which must outlive this object.
 class TypedText : text::NotCopied {
 public:
     explicit TypedText(std::string_view before);

@@ -41,26 +41,26 @@ void reject(Session& session, const std::string& text) {
 }
 
 /// Meanings of lines within a chunk that are not Lua.
-enum class Aside { none, blank, leaving, other };
+enum class LineMeaning { none, blank, leaving, other };
 
-Aside aside(std::string_view line) {
+LineMeaning line_meaning(std::string_view line) {
     const std::string_view word = text::trimmed(line);
     if (word.empty()) {
-        return Aside::blank;
+        return LineMeaning::blank;
     }
     const auto is = [word](std::string_view one) { return word == one; };
     constexpr std::array<std::string_view, 6> leaving = {"quit", "exit", "bye", "quit()", "exit()", ":q"};
     if (std::ranges::any_of(leaving, is) || word == ":quit") {
-        return Aside::leaving;
+        return LineMeaning::leaving;
     }
     const bool asks = word == "help" || word == "help()" || word == ":help" || word.front() == '?';
-    return asks ? Aside::other : Aside::none;
+    return asks ? LineMeaning::other : LineMeaning::none;
 }
 
 /// Reminds of Ctrl-C if a line within a chunk looks like an attempt to leave.
-void remind_of_cancel(const Chunk& chunk, Aside found) {
+void remind_of_cancel(const Chunk& chunk, LineMeaning found) {
     say_notice(fmt::format("{}; Ctrl-C cancels it{}", chunk.waits,
-                           found == Aside::leaving ? ", and :quit then leaves dinal" : ""));
+                           found == LineMeaning::leaving ? ", and :quit then leaves dinal" : ""));
 }
 
 /// Reads the missing lines of a chunk and compiles it: the function is then on the stack. `copied`: the lines were
@@ -83,10 +83,10 @@ TypedLine read_rest(Session& session, Chunk& chunk, TypedLine input, bool copied
             more.text = behind_prompt(more.text).value_or(more.text);
         }
         const bool in_text = !lua::tokens(input.text).empty() && lua::tokens(input.text).back().open;
-        const Aside found = in_text ? Aside::none : aside(more.text);
-        if (found != Aside::none) {
+        const LineMeaning found = in_text ? LineMeaning::none : line_meaning(more.text);
+        if (found != LineMeaning::none) {
             remind_of_cancel(chunk, found);
-            if (found != Aside::blank) {
+            if (found != LineMeaning::blank) {
                 continue;
             }
         }

@@ -65,8 +65,8 @@ bool finished(lua_State* L, int status, const char* file = nullptr) {
         const std::string text =
             status == LUA_ERRSYNTAX || status == LUA_ERRMEM ? load_error_text(L, file) : take_text(L);
         // A run-time error text already reports the interruption and its place.
-        const bool untold = interrupted && status != LUA_ERRRUN;
-        complain(untold ? "interrupted" : text);
+        const bool unreported = interrupted && status != LUA_ERRRUN;
+        complain(unreported ? "interrupted" : text);
     } else if (interrupted) {
         complain("interrupted");
     }

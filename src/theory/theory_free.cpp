@@ -63,7 +63,7 @@ model::State free_response(double natural_frequency, double zeta, const model::S
 HalfCycles::HalfCycles(double zeta, double friction_shift)
     : logarithm_(logarithmic_decrement(zeta) / 2), shift_(friction_shift) {}
 
-// a -> e a - x_f (1 + e), n times: e^n a - x_f (1 + e)(1 - e^n)/(1 - e), and 2 n x_f for e = 1.
+// n half cycles a -> e a - x_f (1 + e) give e^n a - x_f (1 + e)(1 - e^n)/(1 - e), or a - 2 n x_f for e = 1.
 double HalfCycles::shrunk(double n, double size) const {
     if (logarithm_ == 0) return std::fma(-2 * n, shift_, size);
     const double sum = std::expm1(-n * logarithm_) / std::expm1(-logarithm_);

@@ -329,9 +329,9 @@ TEST_CASE("the colours of a map are continuous, and zeros of a positive quantity
     Figure figure;
     figure.shades = std::make_shared<Shades>(Shades{{0, 1}, {0, 1}, {0, 0.5, 1, 2.5}});
     const Dots dots(figure);
-    CHECK(dots.at(1, 0) == flowing_colour(0.2));
-    CHECK(dots.at(0, 1) == flowing_colour(0.4));
-    CHECK(dots.at(1, 1) == flowing_colour(1));
+    CHECK(dots.at(1, 0) == continuous_colour(0.2));
+    CHECK(dots.at(0, 1) == continuous_colour(0.4));
+    CHECK(dots.at(1, 1) == continuous_colour(1));
     const auto nothing = dots.at(0, 0);
     CHECK((nothing == 0xECECEC || nothing == 0xA8A8A8));
 }

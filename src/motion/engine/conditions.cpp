@@ -319,7 +319,7 @@ void Conditions::watch(const Segment& segment, const std::vector<double>& begin,
         std::vector<double> rounded = rounding_of(function, start, first, 4 * rounding * start.t, held);
         // The margin of a condition that was just crossed may be as large as it was then, also on a shorter stretch.
         for (std::size_t c = 0; c < count && crossed_at_ == now; ++c) {
-            const Last& last = last_of(function, function.conditions()[c].step);
+            const LastCrossing& last = last_of(function, function.conditions()[c].step);
             if (last.t == now) rounded[c] = std::max(rounded[c], last.within);
         }
         for (std::size_t c = 0; c < count; ++c) {
@@ -378,7 +378,7 @@ Conditions::Crossed Conditions::cross(const Ending& ending, Now& now, Chatter& c
         }
         const auto [step, beyond, of] = function->conditions()[condition];
         const bool several = ending.conditions.size() > 1;
-        const Last last = last_of(*function, step);
+        const LastCrossing last = last_of(*function, step);
         const double any_before = several ? crossed_at_ : crossed_.try_emplace(function, -model::never).first->second;
         const bool soon_again = here.t - any_before <= soon * unit_;
         const bool rises = beyond > function->decision(step);

@@ -112,24 +112,25 @@ private:
     bool any_ = false, samples_, forgotten_ = true;
     double crossing_at_ = -model::never;
     /// The last crossing of a condition.
-    struct Last {
+    struct LastCrossing {
         bool rises = false;              ///< whether the decision became greater
         double t = -model::never;        ///< the time at which it changed
         double within = 0;               ///< greatest |margin| that counted as zero
         double earlier = -model::never;  ///< time of the previous crossing that was not at t
     };
-    const Last& last_of(const Piecewise& function, std::size_t step) const {
-        static const Last none;
+    const LastCrossing& last_of(const Piecewise& function, std::size_t step) const {
+        static const LastCrossing none;
         const auto found = last_.find({&function, step});
         return found == last_.end() ? none : found->second;
     }
     bool has_just_crossed(const Piecewise& function, std::uint64_t arguments, double now) const;
-    std::map<std::pair<const Piecewise*, std::size_t>, Last> last_;  ///< last crossing of each condition, by its step
-    std::map<const Piecewise*, double> crossed_;                     ///< time of the last crossing of each function
-    double crossed_at_ = -model::never;                              ///< time of the last crossing of any condition
-    double within_ = 0;       ///< greatest |margin| that counts as zero at the next crossing
-    int small_in_a_row_ = 0;  ///< number of successive small jumps
-    double greatest_ = 0;     ///< greatest value or jump so far
+    /// The last crossing of each condition, by its step.
+    std::map<std::pair<const Piecewise*, std::size_t>, LastCrossing> last_;
+    std::map<const Piecewise*, double> crossed_;  ///< time of the last crossing of each function
+    double crossed_at_ = -model::never;           ///< time of the last crossing of any condition
+    double within_ = 0;                           ///< greatest |margin| that counts as zero at the next crossing
+    int small_in_a_row_ = 0;                      ///< number of successive small jumps
+    double greatest_ = 0;                         ///< greatest value or jump so far
     Slides slides_;
     std::vector<SlideChange> ceased_;
     TorqueSizes sizes_;

@@ -109,7 +109,7 @@ Rows rows_at(const model::System& system, const Run& run, std::size_t joint, con
     const std::size_t rows = run.rows.table().size(), acceleration = run.names().size() + joint;
     const std::size_t more = !system.is_link(joint) && acceleration < run.rows.table().columns() ? 1 : 0;
     Growing<double> table(rows, names.size() + more);
-    double* to = table.writable();
+    double* to = table.writable_values();
     const auto copy = [&](std::size_t column) {
         const auto from = run.rows.table().column(column);
         to = std::copy(from.begin(), from.end(), to);

@@ -36,7 +36,7 @@ struct Resonance {
     Complex slope_growing = 0, slope_turning = 0;   ///< coefficients of the derivative
     double fourth_growing = 0, fourth_turning = 0;  ///< bounds for the fourth derivative
 
-    /// g(tau), given exp(lambda tau).
+    /// Returns the divided difference g(tau), given root_turned = exp(lambda tau).
     Complex difference(double tau, Complex root_turned) const {
         const Complex z = from_root * tau;
         const double size = length_of(z);
