@@ -37,7 +37,7 @@ double pair_test(const Eigen::MatrixXd& D) {
     return product.real();
 }
 
-/// Returns whether the pair with the product nearest to 1 is complex; a real pair is no bifurcation.
+/// Returns whether the two multipliers whose product is nearest to 1 are complex, as at a torus point.
 bool has_complex_pair(const Eigen::MatrixXd& D) {
     const Eigen::VectorXcd m = algebra::eigenvalues(D);
     double least = 0.1;

@@ -138,7 +138,6 @@ protected:
     virtual std::optional<Map::Return> measured(const Map::Return& from) = 0;
     /// The range of the last measured period.
     virtual double range() const = 0;
-    /// The size of a motion at this place.
     virtual double size_at(const Map::Return& place) const = 0;
     /// Completes the answer for a closed motion. Returns false if it does not qualify, or is unstable and `any` is
     /// false.

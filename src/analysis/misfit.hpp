@@ -55,8 +55,8 @@ Eigen::MatrixXd responses(const model::Oscillator& system, const model::Excitati
 
 /// A prediction with this torque added to M; empty if it cannot be evaluated.
 using Pushed = std::function<std::optional<Eigen::VectorXd>(const model::Excitation& added)>;
-/// The changes of the prediction caused by each of these torques, by differences of about the noise; `whole` is a large
-/// torque.
+/// The changes of the prediction caused by each of these torques, from finite differences of about the noise;
+/// `whole` is a large torque.
 std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
                                          const Eigen::MatrixXd& torques, double whole, double noise);
 

@@ -313,7 +313,7 @@ private:
     const motion::Monitor& monitor_;
     std::vector<double> sorted_;
     double way_, range_ = 0;
-    std::size_t seen_ = 0;  // number of branches whose births were followed
+    std::size_t seen_ = 0;  // number of branches whose new branches were followed
     bool walkable_ = true, walked_ = false, stopped_ = false;
     std::optional<bool> family_is_symmetric_;  // empty until it is computed
     ResponseCurve curve_;

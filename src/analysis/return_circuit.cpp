@@ -288,7 +288,7 @@ std::unique_ptr<Circuit> circuit_of_first_cycles(const Family& family, double p,
     const Circuit::Lap lap = still.lap(x, p);
     const VectorXd units = still.units(x, lap, rest);
     const Eigen::Index n = x.size();
-    Eigen::MatrixXd D(n, n);  // derivative by scaled places
+    Eigen::MatrixXd D(n, n);  // derivative with respect to scaled places
     constexpr double h = 1e-4;
     for (Eigen::Index i = 0; i < n; ++i) {
         const VectorXd step = h * units[i] * VectorXd::Unit(n, i);

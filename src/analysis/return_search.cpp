@@ -27,7 +27,6 @@ bool has_acts(const model::Drive& drive) {
     return std::ranges::any_of(drive.events, [](const model::WantedEvent& event) { return event.act != nullptr; });
 }
 
-/// The longest delay of a controller.
 double longest_delay(const model::Excitation& excitation) {
     double most = 0;
     for (const model::Component& c : excitation.components()) {
@@ -382,7 +381,9 @@ private:
     }
 
     ReturnSearch& s_;
-    double length_, delay_ = 0, stretch_;  // duration of a return, or 0; greatest delay; length of a run to a passage
+    double length_;     // duration of a return; 0 if it ends at a passage
+    double delay_ = 0;  // greatest delay
+    double stretch_;    // length of a run to a passage
     /// The offset of observations from common sampling instants, because rounding scatters the samples around these.
     /// Half of the shortest interval later no controller samples.
     double beside_ = model::never;

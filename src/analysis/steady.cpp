@@ -96,7 +96,6 @@ bool are_alike(const SteadyMotion& a, const SteadyMotion& b, double size, bool f
     return std::fabs(a.amplitude - b.amplitude) <= 1e-6 * size && apart <= 2e-6 * size;
 }
 
-/// Questions with starts around the motion.
 std::vector<SteadyQuestion> questions_around(const SteadyQuestion& question, const SteadyMotion& known, double size) {
     const double period = known.period > 0 ? known.period : 2 * std::numbers::pi;
     const double omega =
@@ -125,7 +124,6 @@ namespace {
 // A rest at 0, searched from 0, gives no scale for other motions.
 constexpr double smallest_size = 1e-200, default_size = 1;
 
-/// Other motions of one plain body.
 std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool family = known.status == SteadyStatus::steady && known.unique.has_value();
@@ -142,7 +140,6 @@ std::vector<OtherMotion> others_of_one(const SteadyQuestion& question, const Ste
     return others_from(questions_around(question, known, size), known, alike, monitor);
 }
 
-/// Other motions of a system of bodies.
 std::vector<OtherMotion> others_of_all(const SteadyQuestion& question, const SteadyMotion& known,
                                        const motion::Monitor& monitor) {
     const bool alone = known.unique.has_value() && known.status == SteadyStatus::steady;

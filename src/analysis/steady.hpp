@@ -31,7 +31,7 @@ struct SteadyQuestion {
     model::Drive drive;
     /// the body, or the one of interest, as an oscillator
     model::Oscillator body;
-    Repetition repeats = {};  ///< period 0: nothing depends on time, the period of a cycle is unknown
+    Repetition repeats = {};  ///< period 0: nothing depends on time, so the period of a cycle is unknown
     int periods = 0;          ///< how many periods of M one period of the motion lasts; 0: as many as needed
     std::optional<std::size_t> joint = {};  ///< the body or link of interest; none: all named ones
     /// For sampled or delayed controllers: the time after which drive and sampling repeat; 0: arbitrary; -1: there are
@@ -65,7 +65,6 @@ struct BodyMotion {
     double begin = 0;          ///< its angle at the start
 };
 
-/// One period of several bodies.
 struct PeriodOfBodies {
     model::Drive drive;
     motion::Run run;

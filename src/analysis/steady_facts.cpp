@@ -38,7 +38,7 @@ std::vector<std::complex<double>> eigenvalues(const Eigen::Matrix2d& D) {
         const double turn = std::sqrt(-square);
         return {std::complex(mean, turn), std::complex(mean, -turn)};
     }
-    // The greater one first: the other is a quotient rather than a difference.
+    // The greater eigenvalue comes first, so that the other is a quotient instead of a difference of near numbers.
     const double first = mean + std::copysign(std::sqrt(square), mean);
     const double determinant = D(0, 0) * D(1, 1) - D(0, 1) * D(1, 0);
     return {std::complex(first), std::complex(first == 0 ? 0 : determinant / first)};

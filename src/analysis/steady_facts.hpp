@@ -64,7 +64,6 @@ SteadyMotion facts_of(const SteadyQuestion& question, const PeriodMap& map, cons
 /// Fills in what a run of one period shows: extremes, stops, any movement.
 void fill_from_run(const SteadyQuestion& question, const motion::Run& run, SteadyMotion& motion);
 
-/// The question with this start.
 std::shared_ptr<const SteadyQuestion> begun_at(const SteadyQuestion& question, const model::Drive& drive, double start);
 
 /// The motion as seen from the joint of the question; `run` is its period as seen from there, null at rest.

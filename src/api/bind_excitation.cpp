@@ -83,7 +83,7 @@ bool agree(model::Formula& formula, const model::Excitation& terms, const std::v
     return worst <= allowed * greatest;
 }
 
-/// Times in this span, for agree().
+/// Returns five times spread over this span, at which agree() compares.
 std::vector<double> times_within(double from, double to) {
     std::vector<double> times;
     for (const double part : {0.02, 0.3, 0.5, 0.77, 0.98}) {

@@ -126,7 +126,6 @@ constexpr double withheld = std::numeric_limits<double>::quiet_NaN();
 
 // The record passed to identify{ ... }, and the choice of fitted parameters.
 
-/// Reads the option `data`.
 Data record_of(lua_State* L, const lua::Options& options) {
     Data record;
     options.push("data");
@@ -371,7 +370,6 @@ int run_with_numbers(lua_State* L) {
     return 1;
 }
 
-/// A fitted parameter.
 struct Fitted {
     std::string name;
     double start = 0, typical = 0, least = -1e300;
@@ -401,7 +399,6 @@ public:
         take_free();
     }
 
-    /// Runs the fit and fills the answer.
     void fit(FitAnswer& fit) {
         analysis::GeneralQuestion question;
         const auto n = static_cast<Eigen::Index>(free_.size());

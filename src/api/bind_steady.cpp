@@ -24,7 +24,6 @@ namespace dinal::api {
 
 namespace {
 
-/// The motion as seen from this joint.
 SteadyHandle seen_from(const SteadyHandle& whole, std::size_t joint) {
     analysis::SteadyQuestion question = whole->question.seen_at(joint);
     const RunHandle run = whole->run != nullptr ? part_of(whole->run, joint) : nullptr;
@@ -373,7 +372,6 @@ const lua::Class steady_class = {
 
 namespace {
 
-/// Pushes the steady motion for the question.
 int push_steady(lua_State* L, const lua::Options& options, analysis::SteadyQuestion question) {
     if (!question.is_plain()) question.settles = settles_or_fail(options, question);
     const model::Excitation loads = question.drive.sum_of_loads();

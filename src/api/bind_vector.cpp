@@ -133,7 +133,6 @@ struct Comparison {
 thread_local Comparison last_comparison;
 const char comparing_function = 0;  // registry key: keeps the function alive while its address is compared
 
-/// The running function and its line.
 std::pair<const void*, int> running_line(lua_State* L) {
     lua_Debug caller{};
     if (lua_getstack(L, 1, &caller) == 0 || lua_getinfo(L, "lf", &caller) == 0) return {nullptr, 0};
@@ -142,7 +141,6 @@ std::pair<const void*, int> running_line(lua_State* L) {
     return {function, caller.currentline};
 }
 
-/// Returns whether `wanted` is an upvalue of the function.
 bool is_upvalue(lua_State* L, lua_Debug& caller, std::string_view wanted) {
     lua_getinfo(L, "f", &caller);
     bool found = false;

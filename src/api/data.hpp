@@ -33,7 +33,6 @@ struct DataColumn {
     const std::vector<std::string>& words() const { return *std::get<Words>(values); }
     /// A copy with the values of these rows.
     DataColumn rows(const std::vector<std::size_t>& rows) const;
-    /// Pushes the value of a row.
     void push(lua_State* L, std::size_t row) const;
     /// The column as written to a file.
     files::NamedColumn named() const;
@@ -52,7 +51,7 @@ struct Data;
 struct DataCompanion {
     std::string name;
     std::function<Data()> made;
-    std::function<Data()> drawn = {};  ///< drawn as the overlay, if different from the data
+    std::function<Data()> drawn = {};  ///< the overlay of plots, if it differs from the data
 };
 
 struct Data {

@@ -39,7 +39,7 @@ struct LuaRun {
     bool of_all() const { return origin != nullptr && system().named && !joint; }
     /// The index of its joint in the system.
     std::size_t place() const { return joint.value_or(0); }
-    /// Returns whether it was simulated and is the run of a body.
+    /// Returns whether this is a simulated run of one body.
     bool of_body() const { return origin != nullptr && !of_all() && !system().is_link(place()); }
 };
 
@@ -52,7 +52,6 @@ public:
 // Shared: every column in Lua is a view that keeps the whole run alive.
 using RunHandle = std::shared_ptr<const LuaRun>;
 
-/// Pushes the run.
 void push_run(lua_State* L, RunHandle run);
 
 /// The column whose name or number is at `index`; errors name it `what`.

@@ -224,7 +224,6 @@ inline constexpr text::Option system_at_option[] = {
 inline constexpr auto at_options = text::joined(drive_options, period_options, more_drive_options, system_at_option);
 inline constexpr text::Call at_call{"sys:response: at", "at = function(p) return { belt = p.speed } end", at_options};
 
-/// The arguments of a call of sys:response.
 class ResponseCall {
 public:
     ResponseCall(lua_State* L, SystemHandle system, const lua::Options& options)

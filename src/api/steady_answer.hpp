@@ -72,7 +72,6 @@ struct Steady {
 // Shared: a user's function may drop the last reference meanwhile.
 using SteadyHandle = std::shared_ptr<Steady>;
 
-/// Returns whether a motion or a rest was found.
 inline bool is_found(const Steady& s) {
     return s.motion.is_found();
 }

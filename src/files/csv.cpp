@@ -507,7 +507,7 @@ text::Expected<Written> write_csv(const std::string& path, std::span<const Named
 
 namespace {
 
-constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25; 32 copies fast
+constexpr std::size_t cell_size = 32;  // -2.2250738585072014e-308 and a separator take 25 bytes; 32 are copied fast
 
 /// The last value of a column with its text. Friction, pulses or a stuck mass repeat values over many rows.
 struct Cell {

@@ -33,7 +33,7 @@ struct NamedColumn {
 /// The treatment of nan (an empty field) and infinity.
 enum class Gaps { refused, written };
 
-/// All columns of a matrix in order (select from the result to write some).
+/// All columns of a matrix in order, from which the caller may select.
 std::vector<NamedColumn> named_columns(const std::vector<std::string>& names,
                                        const Eigen::Ref<const Eigen::MatrixXd>& values);
 

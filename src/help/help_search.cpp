@@ -30,7 +30,6 @@ bool has_word(std::string_view words, std::string_view wanted) {
     return text::contains(all, wanted);
 }
 
-/// An entry of the manual.
 struct HelpEntry {
     const Section* section;
     const lua::Member* member;  // null: the section itself

@@ -27,7 +27,6 @@ std::string signature(const lua::Doc& doc);
 /// The call whose options are passed in this way, or nullptr.
 const text::Call* call_with(const lua::Doc& doc, Braces braces);
 
-/// The calls of a Doc.
 std::vector<const text::Call*> calls_of(const lua::Doc& doc);
 
 /// An option for a list.

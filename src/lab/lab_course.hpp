@@ -34,11 +34,9 @@ private:
 /// The student number set with lab.number; 0: none.
 [[nodiscard]] std::int64_t lab_number_of(lua_State* L);
 
-/// Returns whether the number is valid.
 [[nodiscard]] bool is_student_number(std::int64_t number) noexcept;
 constexpr std::int64_t greatest_student_number = 999'999'999;
 
-/// The text of the built-in course.
 std::string lab_course_text();
 
 /// An additional sheet: file name and text.
@@ -91,7 +89,6 @@ void note_lab_mark(const LabMark& mark);
 /// The answers of this session in the order in which they were first judged, each with its last verdict.
 const std::vector<LabMark>& lab_answers();
 
-/// The wrong values of earlier sessions for this question.
 std::vector<double> earlier_wrong_values(std::int64_t number, const std::string& question);
 
 }  // namespace dinal::lab

@@ -39,14 +39,12 @@ struct Report {
 };
 using ReportHandle = std::shared_ptr<Report>;
 
-/// Registers report{ ... }.
 extern const lua::Class report_functions;
 extern const lua::Class report_class;
 
 /// Redirects saved reports to this function instead of files: --report adds their parts to the page of the script.
 void take_saved_reports_by(void (*take)(const Report& report));
 
-/// A picture for a report.
 ReportPicture drawn(const api::Picture& picture);
 ReportPicture drawn(const api::Animation& animation);
 

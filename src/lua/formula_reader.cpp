@@ -1288,7 +1288,6 @@ int forget_reading(lua_State* L) {
     return 0;
 }
 
-/// Pushes the metatable of readings.
 void push_reading_class(lua_State* L) {
     if (lua_rawgetp(L, LUA_REGISTRYINDEX, &reading_class_key) == LUA_TTABLE) return;
     lua_pop(L, 1);

@@ -111,7 +111,6 @@ private:
     std::atomic<lua_State*>* outer_;
     const WorkerWatch* outer_watch_;
 };
-/// Returns whether this thread is a worker.
 [[nodiscard]] bool in_worker() noexcept;
 /// Makes that thread check for a stop request. It must not have been joined.
 void nudge(pthread_t worker) noexcept;

@@ -31,7 +31,6 @@ using Tokens = std::vector<Token>;
 /// All tokens of a text, which need not compile; without white space. They refer to the text.
 Tokens tokens(std::string_view text);
 
-/// All keywords of Lua.
 const std::vector<std::string_view>& keywords();
 
 /// The string at `index`, valid while it is on the stack; converts a number there. Empty for other values.

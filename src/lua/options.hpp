@@ -80,7 +80,6 @@ private:
     static constexpr std::size_t most_options = 64;
 
     void check_table();
-    /// Raises an error for unknown options.
     [[noreturn]] void refuse(std::vector<std::string_view>& unknown) const;
     /// The index of the option's row; `most_options` if there is none.
     std::size_t place(std::string_view name) const;

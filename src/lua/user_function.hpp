@@ -158,7 +158,6 @@ public:
     const FunctionRole& role() const { return role_; }
     /// Reads the function as a formula, unless done in this call. Returns why that fails; empty if it succeeds.
     std::string obstacle();
-    /// The result of the last obstacle().
     const std::string& last_obstacle() const { return reading_->obstacle; }
     /// The formula if it has been read, otherwise null.
     model::Formula* formula() const { return reading_->formula ? &*reading_->formula : nullptr; }

@@ -65,7 +65,6 @@ struct Drive {
 
     // For a single body, or the first one.
     const Excitation& M() const { return loads.front(); }
-    /// The sum of all loads.
     Excitation sum_of_loads() const {
         Excitation sum;
         for (const Excitation& load : loads) sum = sum + load;

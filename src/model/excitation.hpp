@@ -114,7 +114,6 @@ public:
     /// out[i] = value(times[i]); not for feedback. Returns how many values were computed: fewer if one is not finite.
     std::size_t fill(std::span<const double> times, std::span<double> out, Spread* spread = nullptr) const;
 
-    /// Calls `call` with each user function.
     void each_function(const std::function<void(UserFunction&)>& call) const;
 
     Excitation scaled(double gain) const;

@@ -541,7 +541,6 @@ double rate_on(Op op, double da, double db, double decision) {
 
 namespace {
 
-/// The rate of the margin of a condition.
 double rate_of_margin(Op op, double a, double b, double da, double db, double decision, double beyond) {
     const double sign = beyond < decision ? 1 : -1;
     switch (op) {

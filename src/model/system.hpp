@@ -133,7 +133,6 @@ struct System {
     /// Returns whether it is one body, with a name or without, that an Oscillator represents completely.
     bool is_alone() const { return joints.size() == 1 && joints.front().is_plain() && !bodies.front().moved; }
     bool is_link(std::size_t joint) const { return joint >= bodies.size(); }
-    /// The index of the joint with this name.
     std::optional<std::size_t> joint_named(std::string_view name) const {
         for (std::size_t j = 0; j < joints.size(); ++j) {
             if (joints[j].name == name) return j;

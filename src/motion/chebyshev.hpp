@@ -70,7 +70,6 @@ inline constexpr double widest_gap = (nodes[degree / 2 + 1] - nodes[degree / 2])
 
 /// The polynomial through values at the nodes. Equal values give a constant, exactly.
 Series<points> fit(const Samples& f);
-/// The values at the nodes.
 Samples at_nodes(const Series<points>& c);
 
 /// The series of degree 16 with the same values at the nodes as a longer one, because T17 = T15 and T18 = T14 there.

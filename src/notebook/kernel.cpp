@@ -210,7 +210,6 @@ Json execute(prompt::Session& session, const std::string& code) {
     return fine ? Json{{"ok", true}, {"notice", errors}} : Json{{"ok", false}, {"error", errors}};
 }
 
-/// The beginning of the word before the cursor.
 std::size_t word_begin(std::string_view before) {
     std::size_t begin = before.size();
     while (begin > 0 && text::is_name_char(before[begin - 1])) --begin;

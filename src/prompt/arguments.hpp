@@ -43,7 +43,6 @@ struct Arguments {
 /// Fails for the first option that is unknown or lacks its value.
 text::Expected<Arguments> parse_arguments(int count, const char* const* words);
 
-/// The output of --help.
 std::string help_text();
 
 }  // namespace dinal::prompt

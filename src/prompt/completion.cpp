@@ -515,7 +515,6 @@ const lua::Member* member_of(const lua::Class& description, std::string_view nam
     return found == description.members.end() ? nullptr : &*found;
 }
 
-/// The meaning of the value on the top.
 Meaning meaning_of_top(lua_State* L) {
     if (lua_isnil(L, -1)) return {};
     const lua::Documented found = lua::documented(L, -1);

@@ -105,7 +105,6 @@ std::vector<HandIn> hand_ins_of(const fs::path& folder) {
     ::_exit(exit_code::usage);
 }
 
-/// The total size of the files in the folder.
 std::uintmax_t size_of_files(const fs::path& folder) {
     std::uintmax_t sum = 0;
     std::error_code wrong;
@@ -141,7 +140,6 @@ Ending wait_for(pid_t child, double seconds, const fs::path& desk) {
     return ending;
 }
 
-/// The first line of the error output.
 std::string first_error(const std::string& desk) {
     const auto output = files::read_file(desk + "/output.txt");
     const std::string text = output ? *output : "";

@@ -144,7 +144,7 @@ std::string local_notice(const std::string& text) {
         if (all[i].is("local") && depth == 0) {
             for (const std::string_view name : declared(all, i)) {
                 if (script || uses(all, name) == 1)
-                    names.push_back(name);  // a variable used on the same line is not lost
+                    names.push_back(name);  // at the prompt, a variable used on its own line is not lost
             }
         }
         depth += opens_block(all[i]) ? 1 : closes_block(all[i]) ? -1 : 0;

@@ -189,7 +189,7 @@ std::size_t list_length(lua_State* L, int index) {
     return static_cast<std::size_t>(border);
 }
 
-/// In the order 1, 2, ... n, other numbers, the time t (as in events), other names, the rest.
+/// The items in the order 1, 2, ... n, other numbers, the time t (as in events), other names, the rest.
 // NOTE: the keys other than 1 to n are in a Lua table left on the stack. No destructor may remove it: while a Lua error
 // unwinds, its message is on the top.
 class TableItems {

@@ -156,7 +156,6 @@ Reading take_copied(Session& session, std::string_view text) {
     return is_open ? take(session, {Reading::line, open}, true) : Reading::line;
 }
 
-/// Reads and executes one input.
 Reading read_and_run(Session& session) {
     TypedLine input = session.editor.read(prompt_text(session.L, "_PROMPT", "> "));
     if (input.reading != Reading::line) {

@@ -82,7 +82,6 @@ private:
     lua_State* before_;
 };
 
-/// Raises a Python exception as a Lua error.
 [[noreturn]] void raise_exception(lua_State* L, const py::error_already_set& raised);
 
 /// Releases a registry value at the next call, as this may be any thread.

@@ -77,7 +77,6 @@ void Carrier::note_library(const std::string& library) {
     }
 }
 
-/// Pushes the value at a place in `to`.
 void Carrier::push_place(const Place& place) {
     lua_pushglobaltable(to_);
     for (const std::string& name : {place.module, place.name}) {

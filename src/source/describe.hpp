@@ -64,7 +64,7 @@ private:
     int budget_;  // number of values that may still be written
 };
 
-/// The function if the excitation is nothing else, otherwise nullptr.
+/// Returns the function if the excitation is this function alone, otherwise nullptr.
 const lua::LuaFunction* function_alone(const model::Excitation& excitation);
 
 /// Lua text that constructs the excitation: "0.5 * excitation.pulse{ amplitude = 1, at = 1.5, width = 0.2 }". A comment

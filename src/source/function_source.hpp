@@ -17,7 +17,6 @@ std::optional<std::string> function_source(lua_State* L, int index);
 /// may share a name.
 void keep_source(lua_State* L, const char* chunk_name, std::string_view text);
 
-/// The last text kept under that name.
 std::optional<std::string> last_kept_source(lua_State* L, const std::string& chunk_name);
 
 }  // namespace dinal::source

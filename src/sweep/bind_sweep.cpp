@@ -247,7 +247,6 @@ int bifurcation(lua_State* L) {
                      }}));
 }
 
-/// Makes a task from the options of sweep.
 SweepTask task_of(const lua::Options& options, int function, const PointGrid& grid) {
     SweepOptions asked;
     options.fill(asked);

@@ -550,7 +550,6 @@ private:
         return data;
     }
 
-    /// The data of the finished points.
     Data finished_data() const {
         const std::vector<std::size_t> points = results_->done_points();
         if (task_.make_columns) return with_heading(task_.make_columns(*results_, points));

@@ -36,7 +36,7 @@ local function free(theta, velocity)
         function(since) return -slow * (theta - soon) * exp(-slow * since) - fast * soon * exp(-fast * since) end
 end
 
-test("a very overdamped motion over a million natural periods keeps its digits, and follows a line in a few arcs", function()
+test("a very overdamped motion over a million natural periods keeps its digits, and follows a linear M in a few arcs", function()
     local own, t_end, line = { I = 1, k = 1, C = C }, 6 * pi / omega, 1e-6
     local rest = free(0.75 - answer(0), -its_velocity(0))
     expect(own, { M = sine(1, omega), theta0 = 0.75, t_end = t_end, dt = t_end / 50, integrator = exact },

@@ -353,7 +353,7 @@ test("linear growth has the rate of its closed form", function()
     equal(tostring(driven), "grows: without bound")
 end)
 
-test("a search begins with the states of the run, and after a step of M has ended", function()
+test("a search begins with the states that the run reached, and with M after its step", function()
     local flip = { when = function(t) return t - 5 end, act = function(_, theta, velocity, z) z.z = -1 return theta, velocity end }
     local run = system{ I = 1, k = 4, C = 0.2, Rd = 0.1 }:simulate{ t_end = 20, dt = 1, events = { flip },
         M = excitation.harmonic{ omega = 1.3 } + excitation.scripted(function(_, _, _, z) return z.z end),

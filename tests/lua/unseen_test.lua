@@ -290,7 +290,7 @@ test("a relay whose function jumps past both thresholds switches once", function
     end
 end)
 
-test("a narrow peak of a law is seen in a list of laws as it is alone", function()
+test("a narrow peak of a law is found in a list of laws as in the law alone", function()
     local function law(more) return friction.law(function(v) return more + 3 * math.exp(-((v - 0.37) / 0.002) ^ 2) end) end
     local function run(own)
         return system { I = 1, k = 4, friction = own }:simulate { M = excitation.harmonic { amplitude = 1.4, omega = 0.8 }, theta0 = 1.5, t_end = 20, dt = 0.1 }

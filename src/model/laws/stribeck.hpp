@@ -64,7 +64,7 @@ inline double Stribeck::slope(double v) const {
     const double exponent = speed_ratio_power(v);
     return -(breakaway - kinetic) * shape * exponent / v * std::exp(-exponent);
 }
-/// Measured: 4.5 speeds for shape 1, 1.26 for shape 2, 0.7 for shape 3; wider where less of the difference is left.
+/// A measured scale: 4.5 speeds for shape 1, 1.26 for shape 2, 0.7 for shape 3; larger where friction is nearly Rd.
 inline double Stribeck::scale(double v) const {
     constexpr double at_zero = 4.5, narrower = 1.83, less = 20;
     return speed * at_zero * std::pow(shape, -narrower) * std::exp(std::min(speed_ratio_power(v), 4 * less) / less);

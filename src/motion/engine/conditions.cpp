@@ -139,7 +139,7 @@ void Conditions::decide(const Moment& at, const Mode& mode, const Segment& last)
     std::vector<double>& y = soon_;
     y.assign(at.y.begin(), at.y.end());
     if (forgotten_ && crossed_at_ == at.t) {
-        // A condition was crossed here, and then an action changed the state: rounding must not lead it back.
+        // After an action at a crossing, rounding must not reverse the decision of the crossing.
         constexpr double past_rounding = 1e-12, few = 16;
         const double step = std::max(past_rounding * unit_, few * rounding * std::fabs(at.t));
         const std::vector<double> moving = slides_.free_rates(mode, at);

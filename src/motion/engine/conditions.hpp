@@ -111,7 +111,6 @@ private:
     double unit_;
     bool any_ = false, samples_, forgotten_ = true;
     double crossing_at_ = -model::never;
-    /// The last crossing of a condition.
     struct LastCrossing {
         bool rises = false;              ///< whether the decision became greater
         double t = -model::never;        ///< the time at which it changed

@@ -10,7 +10,7 @@ namespace dinal::motion::engine {
 
 /// A value type, like Now. The modes of the contacts are in Now.
 struct Contacts {
-    /// The last time a joint began to stick: its direction before that, and its pull.
+    /// The last stick of a joint: its direction before, and its pull.
     struct Arrival {
         model::Motion slid = model::Motion::stuck;
         double pull = 0;

@@ -35,7 +35,6 @@ public:
     explicit Guards(const Parts& parts)
         : mechanics_(parts.mechanics), segment_(parts.segment), frame_(parts.frame), now_(parts.begin), parts_(parts) {}
 
-    /// Returns the first end.
     Ending first();
     /// The released joints that do not move: they stick again, and need a clearly larger pull.
     [[nodiscard]] const std::vector<std::size_t>& stay() const { return stay_; }

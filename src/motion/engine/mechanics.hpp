@@ -129,7 +129,6 @@ public:
     std::size_t events() const { return drive_.events.size(); }
     /// The law of a joint if it has an internal state, or nullptr.
     const model::BendingLaw* bristle(std::size_t joint) const { return contacts_[joint].bristle; }
-    /// The joints with bristles.
     const std::vector<std::size_t>& bristles() const { return bristles_; }
     /// A Jenkins element: a dry slider behind a spring.
     struct Slider {
@@ -275,7 +274,6 @@ public:
     /// upper bound of it if there are many groups.
     double fastest(const Frame& frame) const;
 
-    /// Visits all signals.
     template <class F>
     void for_each_signal(F f) {
         for (Signal* s : signals_) f(*s);
@@ -385,7 +383,6 @@ private:
     double load_on(std::size_t joint, const Moment& at) const;
     double sliding_per_load(std::size_t joint, const Slipping& how, double slip, const Moment& at) const;
     double holding_per_load(std::size_t joint, model::Motion way, const Moment& at) const;
-    /// Visits each user function.
     void each_function(const std::function<void(model::UserFunction&)>& call) const;
 
     const model::System& system_;

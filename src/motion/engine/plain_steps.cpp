@@ -447,7 +447,6 @@ bool PlainSteps::turn(const Parts& parts, std::size_t n, std::size_t i) {
     return true;
 }
 
-/// M within step i.
 double PlainSteps::M_at(std::size_t i, double t, const model::State& y) {
     if (affine_) return M_.value(t);
     put_state(i, t, y);

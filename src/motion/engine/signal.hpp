@@ -46,7 +46,6 @@ struct Moment {
     double slow = model::never;
 };
 
-/// The calling convention of user functions.
 struct CallConvention {
     bool named = true;       ///< whether they receive all of y (without bristles) as states
     std::size_t passed = 0;  ///< length of the part of y that is passed
@@ -220,7 +219,6 @@ public:
     Signal(const model::Excitation& excitation, const CallConvention* convention);
 
     bool none() const { return parts_.empty(); }
-    /// Returns whether some function depends on the motion.
     bool depends_on_motion() const { return depends_on_motion_; }
     /// Returns whether some function is known only at sampled points.
     bool samples_functions() const { return samples_functions_; }

@@ -92,7 +92,6 @@ public:
     /// The time at which a load deviated from its series; loads are sampled until it has passed.
     [[nodiscard]] double seen() const { return seen_; }
     void note_deviation(double t) { seen_ = t; }
-    /// Returns whether the proofs failed for the last stretch.
     [[nodiscard]] bool failed_last() const { return failed_in_a_row_ > 0; }
 
 private:
