@@ -6,7 +6,7 @@
 #include <new>
 
 #include "support/catch.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 
 namespace {
 thread_local long allocations = 0;

@@ -7,8 +7,8 @@
 #include "model/laws/tabulated.hpp"
 #include "support/catch.hpp"
 #include "support/kinds.hpp"
-#include "support/measure.hpp"
 #include "support/mixed_truth.hpp"
+#include "support/systems.hpp"
 #include "support/within.hpp"
 
 namespace dinal::corners_test {

@@ -1,7 +1,7 @@
 // Properties of exact alone; tests/core/oracle_test.cpp and tests/lua/scales_test.lua have its motions.
 #include "model/closed_form.hpp"
 #include "support/catch.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 #include "support/within.hpp"
 
 namespace dinal::exact_test {

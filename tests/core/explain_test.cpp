@@ -8,7 +8,7 @@
 #include "model/excitation.hpp"
 #include "support/catch.hpp"
 #include "support/excitations.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 #include "text/characters.hpp"
 #include "text/words.hpp"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "support/catch.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 #include "support/within.hpp"
 
 namespace dinal::recurrence_test {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "support/catch.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 
 namespace dinal::rows_test {
 

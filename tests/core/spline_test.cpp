@@ -9,7 +9,7 @@
 #include "model/closed_form.hpp"
 #include "model/excitation.hpp"
 #include "support/catch.hpp"
-#include "support/measure.hpp"
+#include "support/systems.hpp"
 #include "support/within.hpp"
 
 namespace dinal::spline_test {

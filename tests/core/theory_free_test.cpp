@@ -1,11 +1,12 @@
-// Closed forms of free motion against an independent exact solution; printed numbers are in tests/lua/theory_test.lua.
+// Closed forms of free motion against runs; printed numbers are in tests/lua/theory_test.lua.
 #include "theory/theory_free.hpp"
 
 #include <cmath>
 
 #include "support/catch.hpp"
-#include "support/measure.hpp"
 #include "support/random_case.hpp"
+#include "support/systems.hpp"
+#include "support/within.hpp"
 
 namespace dinal::theory_free_test {
 
@@ -14,67 +15,45 @@ using namespace dinal::motion;
 using namespace dinal::theory;
 using truth::nondimensional;
 
-namespace {
-
-truth::ExactMotion true_motion(const Oscillator& system, const State& initial, double end) {
-    return {system, {truth::Piece{}}, initial, 0, end};
-}
-
-}  // namespace
-
-TEST_CASE("the free response is exact in all regimes and between them", "[theory]") {
-    truth::Lot chance(1);
-    for (int i = 0; i < 400; ++i) {
-        const double near_one = 1 + (i % 2 == 0 ? 1 : -1) * chance.power_of_ten(-16, -1);
-        const double zeta = i % 4 == 0 ? near_one : i % 4 == 1 ? chance.power_of_ten(-6, 2) : chance.between(0, 2);
-        const Oscillator system = nondimensional(zeta, 0);
-        const State initial{chance.between(-1, 1), chance.between(-6, 6)};
-        const double t = chance.between(0, 3);
-        const truth::Motion y = true_motion(system, initial, 3).at(t);
-        const State found = free_response(system.natural_frequency(), system.damping_ratio(), initial, t);
-        CAPTURE(zeta, t);
-        // A hundred roundings of the size of the motion; the velocity is greater by w0.
-        REQUIRE(std::fabs(found.theta - static_cast<double>(y.theta)) <= 1e-14);
-        REQUIRE(std::fabs(found.velocity - static_cast<double>(y.velocity)) <= 1e-13);
-    }
-}
-
-TEST_CASE("free motion with dry friction is exact, event by event and in between", "[theory]") {
+TEST_CASE("free motion is that of a run in all regimes and between them, event by event and in between", "[theory]") {
     truth::Lot chance(2);
     int rests = 0;
     for (int i = 0; i < 300; ++i) {
-        const double zeta = i % 3 == 0 ? 0 : chance.between(0, i % 3 == 1 ? 0.3 : 1.6);
-        const double gamma = chance.between(0.005, 0.3);
+        const double near_one = 1 + (i % 2 == 0 ? 1 : -1) * chance.power_of_ten(-16, -1);
+        const double zeta = i % 4 == 0   ? 0
+                            : i % 4 == 1 ? chance.between(0, 0.3)
+                            : i % 4 == 2 ? near_one
+                                         : chance.power_of_ten(-6, 1.5);
+        const double gamma = i % 5 == 0 ? 0 : chance.between(0.005, 0.3);
         const Oscillator system = nondimensional(zeta, gamma, gamma * (i % 2 == 0 ? 1 : chance.between(1, 2)));
-        const State initial{chance.between(-1, 1), i % 5 == 0 ? 0 : chance.between(-6, 6)};
+        const State initial{chance.between(-1, 1), i % 7 == 0 ? 0 : chance.between(-6, 6)};
         const double end = 12;
-        const truth::ExactMotion y = true_motion(system, initial, end);
+        // Not by exact, which has closed forms, too.
+        const Run run = truth::must_run(system, {}, initial, {0, end}, Grid::none(), Spectral{1e-14});
         const FreeMotion motion(system, initial);
         CAPTURE(zeta, gamma, initial.theta, initial.velocity);
         for (int j = 0; j < 20; ++j) {
             const double t = chance.between(0, end);
-            // A few roundings for each half cycle, and t itself is rounded.
-            REQUIRE(std::fabs(motion.at(t).theta - static_cast<double>(y.at(t).theta)) <= 2e-14);
-            REQUIRE(std::fabs(motion.at(t).velocity - static_cast<double>(y.at(t).velocity)) <= 2e-13);
+            REQUIRE(motion.at(t).theta == within(run.at(t)->theta, 1e-13));
+            REQUIRE(motion.at(t).velocity == within(run.at(t)->velocity, 1e-12));
         }
         // Rows at even times, and at times that are almost even.
         std::vector<double> times, theta(40);
         for (int j = 0; j < 40; ++j) times.push_back(5 + 0.3 * j + (i % 2 == 0 ? 0 : chance.between(0, 1e-10)));
         free_decay(system, initial, times, {}, theta);
         for (std::size_t j = 0; j < times.size(); ++j) {
-            REQUIRE(std::fabs(theta[j] - static_cast<double>(y.at(times[j] - times[0]).theta)) <= 2e-14);
+            REQUIRE(theta[j] == within(run.at(times[j] - times[0])->theta, 1e-13));
         }
+        if (zeta >= 1) continue;  // a run also calls a mass stuck that creeps closer than rounding
+        REQUIRE((run.outcome == Outcome::at_rest) == (motion.time_to_rest() < end));
+        if (run.outcome != Outcome::at_rest || run.events.empty()) continue;
+        ++rests;
         const double start =
             initial.velocity == 0 ? 1 : 0;  // a start at rest counts as an extreme, but is not an event
-        if (motion.time_to_rest() < end && !y.events().empty()) {
-            ++rests;
-            REQUIRE(motion.extremes() == static_cast<double>(y.events().size()) + start);
-            REQUIRE(y.ends_stuck());
-            REQUIRE(std::fabs(motion.time_to_rest() - static_cast<double>(y.events().back().t)) <= 2e-14);
-        }
-        REQUIRE(y.ends_stuck() == (motion.time_to_rest() < end));
+        REQUIRE(motion.extremes() == static_cast<double>(run.events.size()) + start);
+        REQUIRE(motion.time_to_rest() == within(run.events.back().t, 1e-12));
     }
-    CHECK(rests > 150);
+    CHECK(rests > 100);
 }
 
 TEST_CASE("n half cycles at once equal n single ones", "[theory]") {

@@ -162,6 +162,34 @@ test("a block drawn with Re = Rd slows down to velocity zero once a period, and 
     end
 end)
 
+test("a velocity that passes zero and returns within a step makes two turns, and one that only nears zero makes none", function()
+    -- Drawn by a ramp and shaken by a sine the mass moves on at 0.3 (1 + (1 + depth) cos(9 t - lag)).
+    local C, I = 0.5 / pi, 1 / (4 * pi ^ 2)
+    local lag = math.atan(9 * C, 1 - 81 * I)
+    for _, depth in ipairs { 1e-2, 1e-3, 1e-4, 1e-5, -1e-5, -1e-4, -1e-3 } do -- at 1e-5 it moves back for a fifth of a step
+        local swing = 0.3 * (1 + depth) / 9
+        local M = excitation.ramp { slope = 0.3 } + sine(swing * math.sqrt((1 - 81 * I) ^ 2 + (9 * C) ^ 2), 9)
+        local turns = {}
+        for n = 0, depth > 0 and 16 or -1 do
+            for side = -1, 1, 2 do turns[#turns + 1] = ((2 * n + 1) * pi + side * math.acos(1 / (1 + depth)) + lag) / 9 end
+        end
+        for _, dry in ipairs { 0, 0.01 } do -- with friction it has no closed form after the first turn
+            local function go(by)
+                return system { I = I, k = 1, C = C, Rd = dry }:simulate { M = M, theta0 = -0.3 * C - dry - swing * sin(lag),
+                    velocity0 = 0.3 * (1 + (1 + depth) * math.cos(lag)), t_end = 12, dt = 12, integrator = by }
+            end
+            local exact = go(integrator.exact {})
+            equal(#exact.events > 20, depth > 0)
+            each(function(by, _, name)
+                -- An error e of the velocity moves a zero by e over the distance of the two zeros, 1e-3.
+                local run, within = go(by), name == "rk4" and 1e-5 or 1e-11
+                same_events(run, exact, within, name .. depth)
+                for i, t in ipairs(dry == 0 and turns or {}) do near(run.events[i].t, t, within) end
+            end, 0.005)
+        end
+    end
+end)
+
 test("after a jump of M exactly at a turn the mass moves on under the new load", function()
     -- Free with gamma = 0.2 from theta = 1: a turn at t = 0.5, theta = -0.6.
     local sys = nondimensional { friction_ratio = 0.2 }

@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "support/closed_form.hpp"
-
 namespace dinal::truth {
+
+using real = long double;
 
 struct MixedPoint {
     real theta = 0, velocity = 0, z = 0;

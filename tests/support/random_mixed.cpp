@@ -10,8 +10,8 @@
 #include "model/laws/user_law.hpp"
 #include "model/springs.hpp"
 #include "support/kinds.hpp"
-#include "support/measure.hpp"
 #include "support/random_case.hpp"
+#include "support/systems.hpp"
 #include "support/written.hpp"
 
 namespace dinal::truth {
