@@ -3,7 +3,10 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "comparison.hpp"
 #include "dinal_runs.hpp"
+#include "motion/integrators.hpp"
+#include "motion/simulate.hpp"
 
 namespace bench {
 
@@ -27,8 +30,6 @@ Excitation excitation(const Workload& work) {
     return work.driven ? need(Excitation::make(Harmonic{.amplitude = 1, .omega = omega0})) : Excitation();
 }
 
-}  // namespace
-
 // k = 1 and I = 1/w0^2: times are in natural periods, angles in Mc/k.
 Oscillator oscillator(const Workload& work) {
     const double inertia = 1 / (omega0 * omega0);
@@ -41,8 +42,6 @@ Oscillator oscillator(const Workload& work) {
 Run run_of(const Workload& work, const Integrator& integrator, const Grid& rows) {
     return need(simulate(oscillator(work), {excitation(work), {work.u0, work.v0}}, {0, work.length}, rows, integrator));
 }
-
-namespace {
 
 double run(const Workload& work, const Integrator& integrator) {
     return run_of(work, integrator, Grid::none()).t_stop;

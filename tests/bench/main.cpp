@@ -13,13 +13,7 @@ int main(int argc, char** argv) {
 
     bench::Results results;
     bench::register_workloads(results);
-    bench::register_closed_forms(results);
-    bench::register_analysis(results);
-    bench::register_rows(results);
-    bench::register_lua(results);
-    bench::register_systems(results);
-    bench::register_plots(results);
-    bench::register_start(results);
+    bench::register_work(results);
 
     benchmark::Initialize(&argc, argv);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) {

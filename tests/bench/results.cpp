@@ -19,7 +19,8 @@ Item& Results::of(const std::string& group, const std::string& name) {
             return item;
         }
     }
-    items_.push_back({.group = group, .name = name, .seconds = {}, .per = {}});
+    items_.emplace_back();
+    items_.back().group = group, items_.back().name = name;
     return items_.back();
 }
 
