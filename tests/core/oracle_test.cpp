@@ -12,7 +12,7 @@ using namespace dinal::truth;
 
 namespace {
 
-constexpr long usual_cases = 60;  // scripts/test lots makes thousands
+constexpr long usual_cases = 30;  // scripts/test lots makes thousands
 constexpr double accuracy = 1e-11;
 
 bool is_exact(const RandomCase& c, std::uint64_t) {

@@ -102,7 +102,7 @@ test("exact data give errors of at least some ulps, and over many records the er
         part, ratio = judged(identify { data = { t = run.t, velocity = v }, M = M, system = sys, free = { "k", "C", "Rd" }, measured = "velocity" },
             { k = 4, C = 0.1, Rd = 0.1 })
     end
-    assert(records < 40 or part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
+    assert(records < 10 or part > 0.88 and ratio > 0.75 and ratio < 1.25, part .. " " .. ratio)
 end)
 
 local function drive_train(Rd, k)

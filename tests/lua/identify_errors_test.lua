@@ -52,9 +52,9 @@ test("friction that falls with the speed is reported or widens the errors that i
         one, two = count(fit, truth)
         three, four = cautious(fit, truth)
     end
-    if n == 200 then assert(three > 0.9 and four > 0.95, three .. " " .. four) end
+    if n > 60 then assert(three > 0.9 and four > 0.95, three .. " " .. four) end
     -- Most of the rest cannot be seen: over a part of its speeds such a law is a line, which Rd and C imitate.
-    if n == 200 then assert(told > 45 and one > 0.4 and two > 0.6, told .. " " .. one .. " " .. two) end
+    if n > 60 then assert(told > 0.22 * n and one > 0.4 and two > 0.6, told .. " " .. one .. " " .. two) end
 end)
 
 test("a drifting zero is reported or widens the errors, most of all that of the offset at the first time", function()
@@ -66,7 +66,7 @@ test("a drifting zero is reported or widens the errors, most of all that of the 
         one, two = count(fit, truth)
         three, four = offset(fit, truth)
     end
-    if n == 200 then assert(one > 0.66 and two > 0.91 and three > 0.66 and four > 0.92, one .. " " .. two .. " " .. three .. " " .. four) end
+    if n > 60 then assert(one > 0.66 and two > 0.91 and three > 0.66 and four > 0.92, one .. " " .. two .. " " .. three .. " " .. four) end
 end)
 
 test("steps of an instrument do not hide where the mass rests, although the zero is fitted to them", function()
@@ -78,7 +78,7 @@ test("steps of an instrument do not hide where the mass rests, although the zero
         equal(fit.misfit, nil)
         one, two = count(fit, truth)
     end
-    if n == 100 then assert(one > 0.66 and two > 0.92, one .. " " .. two) end
+    if n > 30 then assert(one > 0.66 and two > 0.92, one .. " " .. two) end
 end)
 
 test("noise with a memory gives errors that are neither too narrow nor too wide, and no remark on the model", function()
@@ -95,7 +95,7 @@ test("noise with a memory gives errors that are neither too narrow nor too wide,
         end
         assert(told >= 0.9 * n, told)
         -- 600 numbers of 100 records, six of each correlated
-        if n == 100 then assert(one > 0.62 and one < 0.78 and two > 0.91 and two < 0.985 and accused <= 6, memory .. ": " .. one .. " " .. two .. " " .. accused) end
+        if n > 30 then assert(one > 0.62 and one < 0.78 and two > 0.91 and two < 0.985 and accused <= 0.06 * n, memory .. ": " .. one .. " " .. two .. " " .. accused) end
     end
 end)
 
@@ -106,7 +106,7 @@ test("noise that grows with the swing widens the errors where it is strong", fun
         local fit = identify{ data = { t = run.t, theta = run.theta + noise * (0.2 + 2 * run.theta:abs()) + 0.1 } }
         one, two = count(fit, truth)
     end
-    if n == 100 then assert(one > 0.54 and two > 0.83, one .. " " .. two) end
+    if n > 30 then assert(one > 0.54 and two > 0.83, one .. " " .. two) end
 end)
 
 test("the noise of a straight line drawn through a drifting zero is that of its offset at the first time", function()
@@ -129,7 +129,7 @@ test("steps of an instrument are not taken for another law of friction by a fit 
         if fit.misfit then accused = accused + 1 end
         one, two = count(fit, { k = k, C = C, Rd = k * truth.Rd_over_k })
     end
-    if n == 60 then assert(accused <= 4 and one > 0.58 and two > 0.88, accused .. " " .. one .. " " .. two) end
+    if n >= 20 then assert(accused <= 0.07 * n and one > 0.5 and two > 0.88, accused .. " " .. one .. " " .. two) end
 end)
 
 test("friction that falls with the speed in a driven record is reported or widens the errors", function()
@@ -146,7 +146,7 @@ test("friction that falls with the speed in a driven record is reported or widen
         local noise = vector.normal{ n = #run, seed = seed, std = A * by_ratio(1e-3, 0.05) }
         one, two = count(identify{ data = { t = run.t, theta = run.theta + noise }, M = M }, truth)
     end
-    if n == 30 then assert(one > 0.55 and two > 0.84, one .. " " .. two) end
+    if n >= 10 then assert(one > 0.55 and two > 0.84, one .. " " .. two) end
 end)
 
 test("a wrong law of friction is reported under a feedback, too", function()

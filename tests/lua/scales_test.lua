@@ -40,7 +40,7 @@ test("a very overdamped motion over a million natural periods keeps its digits, 
     local own, t_end, line = { I = 1, k = 1, C = C }, 6 * pi / omega, 1e-6
     local rest = free(0.75 - answer(0), -its_velocity(0))
     expect(own, { M = sine(1, omega), theta0 = 0.75, t_end = t_end, dt = t_end / 50, integrator = exact },
-        { theta = function(t) return answer(t) + rest(t) end, within = 4e-15 })
+        { theta = function(t) return answer(t) + rest(t) end, within = 4e-15, closes = false }) -- its energy takes long
     -- The line's own answer is late by C/k; some roundings of numbers near 8.
     local to_line = free(0.75 + line * C, -line)
     expect(own, { M = excitation.polynomial { coefficients = { 0, line } }, theta0 = 0.75, t_end = 8e6, dt = 1.6e5, integrator = exact },

@@ -17,7 +17,7 @@ end
 
 --- A test that only goes on and on, which shows a sanitizer nothing new: not run where cases by lot are few.
 function support.long_test(sentence, body)
-    if not os.getenv "DINAL_ORACLE_CASES" then support.test(sentence, body) end
+    if support.lots(100) > 30 then support.test(sentence, body) end
 end
 
 --- To be called at the end of a test file.
@@ -335,9 +335,12 @@ function support.unread(f)
     return function(...) return ({ f(...) })[1] end
 end
 
---- How many of n cases by lot are looked at: fewer where a sanitizer makes them slow, or somebody says so.
+-- How many cases by lot somebody asks for: few where a sanitizer makes them slow, thousands where time does not matter.
+local cases = tonumber(os.getenv "DINAL_ORACLE_CASES")
+
+--- How many of n cases by lot are looked at: a third, unless somebody asks for more or fewer.
 function support.lots(n)
-    return math.min(n, tonumber(os.getenv "DINAL_ORACLE_CASES") or n)
+    return math.min(n, cases or math.ceil(n / 3))
 end
 
 --- A name for a new file with this ending; the file is removed when the tests end.

@@ -67,7 +67,7 @@ test("a narrow smooth pulse is found in every kind of function", function()
     table.sort(names)
     for _, kind in ipairs(names) do
         local of = kinds[kind]
-        for n = 1, 24 do
+        for n = 1, lots(24) do
             local shape = shapes[n % #shapes + 1]
             local p, w = lot(.3, 1.5), 10 ^ lot(-6, -2)
             local want, got, run = of(shape.at(p, w), shape.area, w)
@@ -330,7 +330,7 @@ test("a smooth window whose formula overflows beyond its ends does not end the r
         end
     end
     for _, kind in ipairs { "M", "field", "damping", "state", "spring", "friction", "Rd", "normal", "base", "delayed" } do
-        for _ = 1, 12 do
+        for _ = 1, lots(12) do
             local p, w = lot(.3, 1.5), 10 ^ lot(-6, -1.5)
             local want, got = kinds[kind](bump(p, w), 1.2069003224378765, w)
             near(got, want, 2e-6, ("%s: w %g p %g"):format(kind, w, p))
