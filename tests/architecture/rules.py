@@ -159,7 +159,7 @@ def tests_are_namespaces():
     """They are compiled together, and what one of them uses or calls something is no matter of the next."""
     for path in files((".cpp",)):
         own = f"namespace dinal::{os.path.basename(path)[:-4]} {{"
-        if path.startswith("tests/core/") and not path.endswith("allocation_test.cpp") and own not in dict(lines(path)).values():
+        if path.startswith("tests/core/") and own not in dict(lines(path)).values():
             complain(path, 1, f"a test lives in a {own[:-2]}")
 
 

@@ -46,15 +46,14 @@ double number_of(lua_State* L, const char* name) {
     return number;
 }
 
-void measure(benchmark::State& state, Item& item, lua_Integer row) {
+void measure(benchmark::State& state, lua_Integer row) {
     lua_State* L = work();
     for ([[maybe_unused]] auto iteration : state) {
         lua_settop(L, 1);
         lua_geti(L, 1, row);
         lua_getfield(L, -1, "run");
-        if (lua_pcall(L, 0, 1, 0) != LUA_OK) return state.SkipWithError(lua_tostring(L, -1));
+        if (lua_pcall(L, 0, 0, 0) != LUA_OK) return state.SkipWithError(lua_tostring(L, -1));
     }
-    if (item.unit == "calls") item.calls = lua_tonumber(L, -1);
 }
 
 }  // namespace
@@ -72,9 +71,8 @@ void register_work(Results& results) {
             lua_pop(L, 2);
         }
         lua_pop(L, 1);
-        auto* registered =
-            benchmark::RegisterBenchmark((item.group + "/" + item.name).c_str(),
-                                         [&item, row](benchmark::State& state) { measure(state, item, row); });
+        auto* registered = benchmark::RegisterBenchmark((item.group + "/" + item.name).c_str(),
+                                                        [row](benchmark::State& state) { measure(state, row); });
         lua_getfield(L, -1, "by_clock");
         if (lua_toboolean(L, -1)) registered->UseRealTime();
         lua_pop(L, 1);

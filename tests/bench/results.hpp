@@ -13,14 +13,13 @@ namespace bench {
 
 struct Item {
     std::string group, name;
-    std::vector<double> seconds;  ///< of one iteration, one for each repetition
-    double error = -1;            ///< max |u - truth| in units of Mc/k; negative: not computed
-    double count = 0;             ///< number of units named by `per` in one iteration
-    std::string per;              ///< "step", "row", "call"; empty: the whole only
-    std::string unit;  ///< of `most`: of a time, "calls" of a Lua function M, or "x" times `against`; or empty
-    double most = 0;   ///< the bar of one unit
+    std::vector<double> seconds;                  ///< of one iteration, one for each repetition
+    double error = -1;                            ///< max |u - truth| in units of Mc/k; negative: not computed
+    double count = 0;                             ///< number of units named by `per` in one iteration
+    std::string per;                              ///< "step", "row", "call"; empty: the whole only
+    std::string unit;                             ///< of `most`: of a time, or "x" times `against`; or empty
+    double most = 0;                              ///< the bar of one unit
     std::pair<std::string, std::string> against;  ///< group and name of another item
-    double calls = 0;                             ///< in one iteration, if counted
 
     [[nodiscard]] double median() const;
 };

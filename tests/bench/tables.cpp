@@ -58,7 +58,6 @@ std::optional<double> found_in(const Results& results, const Item& item) {
     const Item* measured = results.find(item.group, item.name);
     if (measured == nullptr) return {};
     if (item.unit == "x") return ratio(measured, results.find(item.against.first, item.against.second));
-    if (item.unit == "calls") return item.calls / item.count;
     const double units = item.unit == "ns" ? 1e9 : item.unit == "us" ? 1e6 : item.unit == "ms" ? 1e3 : 1;
     return item.median() / item.count * units;
 }

@@ -1,5 +1,5 @@
 -- What is timed of dinal alone, beside the work of the peers: each row is a function, how many of what `per` names it
--- does, and the most that one of them may take in `unit`. "calls" is a number of calls of M, which the function returns.
+-- does, and the most that one of them may take in `unit`; "x" is the time of `against`.
 
 local w0 = 2 * math.pi
 local rows = {}
@@ -119,12 +119,6 @@ do
     local function M(t) return math.sin(2 * math.pi * t) end
     local arcs = { against = { "W3", "closed-form arcs by hand" } }
     add("Lua", "W3, M in Lua that is read", "run", 1, 3.5, "x", over(w3, { M = M, theta0 = 1 }, 1000), arcs)
-    add("Lua", "W3, M in Lua that is not read", "period", 1000, 70, "calls", function()
-        local calls = 0
-        over(w3, { M = function(t) calls = calls + 1 return M(t) end, theta0 = 1 }, 1000)()
-        return calls
-    end)
-
     local k = 4 * math.pi ^ 2
     local held = { I = 1, k = k, C = 1, Rd = 1, Re = 1.2 }
     local function error_of(t, theta) return math.sin(3 * t) - theta end
@@ -161,23 +155,6 @@ do
     local sys = nondimensional { zeta = 0.05, friction_ratio = 0.2 }
     add("Lua", "a sine of 16 bits over 10 T0", "run", 1, 1, "s",
         over(sys, { M = function(t) return math.floor(M(0.7 * t) * 32768 + 0.5) / 32768 end }, 10))
-    local function calls_of(f, breaks)
-        local calls = 0
-        over(sys, { M = excitation.scripted(function(t) calls = calls + 1 return f(t) end, { breaks = breaks }) }, 10)()
-        return calls
-    end
-    add("Lua", "a jump unannounced against announced", "jump", 20, 70, "calls", function()
-        local more = 0
-        for i = 1, 20 do
-            local at = 0.5 + 0.4317 * i
-            local function jumps(t) return 0.9 * math.sin(2 * t) + (t < at and 0 or 0.3) end
-            more = more + calls_of(jumps, {}) - calls_of(jumps, { at })
-        end
-        return more
-    end)
-    add("Lua", "a staircase of equal steps", "step", 10 // 0.0371, 40, "calls", function()
-        return calls_of(function(t) return math.floor(t / 0.0371) * 0.0371 end, {})
-    end)
 end
 
 return rows

@@ -10,12 +10,13 @@
 #include "model/laws/coulomb.hpp"
 #include "motion/engine/run.hpp"
 #include "support/catch.hpp"
-#include "support/written.hpp"
+#include "support/systems.hpp"
 
 namespace dinal::bodies_test {
 
 using namespace dinal::model;
 using namespace dinal::motion;
+using truth::harmonic;
 
 namespace {
 
@@ -33,12 +34,6 @@ public:
 private:
     std::mt19937 random_;
 };
-
-Excitation harmonic(double amplitude, double omega, double phase) {
-    Harmonic term;
-    term.amplitude = amplitude, term.omega = omega, term.phase = phase;
-    return Excitation::make(term).value();
-}
 
 /// Bodies on the ground and in a chain, most of which rub; with Re > Rd in half of the contacts when `sticky`.
 Rig random_chain(unsigned seed, bool sticky) {

@@ -298,12 +298,6 @@ TEST_CASE("a binary file is refused with the line of its NUL byte", "[csv]") {
     CHECK_THAT(fault("# c\0\nt\n1\n"sv), Contains("x.csv:1: "));
 }
 
-TEST_CASE("a missing file and a folder are refused by name", "[csv]") {
-    const TemporaryFolder folder;
-    CHECK_THAT(read_csv(folder.file("no.csv")).error().sentence, Contains("no.csv': No such file"));
-    CHECK_THAT(read_csv(folder.path()).error().sentence, Contains("folder"));
-}
-
 TEST_CASE("a table that cannot be written leaves the old file", "[csv]") {
     const TemporaryFolder folder;
     const std::string path = folder.file("x.csv");

@@ -59,22 +59,6 @@ TEST_CASE("a block of a sine is accurate to the rounding of its times, however l
     }
 }
 
-TEST_CASE("gain, sum, delay and window agree with their formulas", "[excitation]") {
-    const auto terms = one_of_each();
-    for (const Excitation& a : terms) {
-        for (const Excitation& b : {terms[1], terms[3]}) {
-            for (const double t : {-0.33, 0.05, 0.222, 0.77, 1.9}) {
-                CHECK((a + b).value(t) == a.value(t) + b.value(t));
-                CHECK((a + b).scaled(-3).value(t) == near(-3 * (a.value(t) + b.value(t))));
-                // Shifting the terms by 0.4 rounds their times once; slopes here are below 100.
-                CHECK(a.delayed(0.4).value(t) == within(a.value(t - 0.4), 1e-12));
-                CHECK((a + b).windowed(0, 1).value(t) == near(t >= 0 && t < 1 ? a.value(t) + b.value(t) : 0));
-            }
-            CHECK((a + b).next_break(0.15) == std::min(a.next_break(0.15), b.next_break(0.15)));
-        }
-    }
-}
-
 TEST_CASE("a window of a delayed excitation and a delay of a windowed one differ", "[excitation]") {
     const Excitation M = made(Constant{1});
     CHECK(breaks_of(M.delayed(2).windowed(0, 1), -9, 9) == std::vector<double>{0, 1});

@@ -1,8 +1,7 @@
-// The motion between the rows, whichever rows are requested, and the step of rk4.
+// The motion between the rows, whichever rows are requested.
 #include <cmath>
 #include <functional>
 
-#include "motion/engine/affine_block.hpp"
 #include "support/catch.hpp"
 #include "support/systems.hpp"
 
@@ -100,26 +99,6 @@ TEST_CASE("the requested rows do not change the motion", "[spectral][rk4][dopri5
             REQUIRE(distance(work, at_end, *other, last) <= rounding_of_time(work, integrator));
         }
     });
-}
-
-TEST_CASE("an affine step equals the four stages of the classical method") {
-    const double k = 4, C = 0.3, h = 0.1;
-    const State begin{0.7, -0.4};
-    const double at_begin = 0.2, in_the_middle = 0.5, at_end = 0.9;  // the torques, by the inertia
-    const auto along = [&](const State& by, double length) {
-        return State{begin.theta + length * by.theta, begin.velocity + length * by.velocity};
-    };
-    const auto rate = [&](double forcing, const State& y) {
-        return State{y.velocity, forcing - C * y.velocity - k * y.theta};
-    };
-    const State a = rate(at_begin, begin), b = rate(in_the_middle, along(a, h / 2));
-    const State c = rate(in_the_middle, along(b, h / 2)), d = rate(at_end, along(c, h));
-    const State sum{a.theta + 2 * b.theta + 2 * c.theta + d.theta,
-                    a.velocity + 2 * b.velocity + 2 * c.velocity + d.velocity};
-    const State end = along(sum, h / 6);
-    const State affine = engine::AffineStep(k, C, h)(begin, at_begin, in_the_middle, at_end);
-    CHECK(std::fabs(affine.theta - end.theta) < 1e-15);
-    CHECK(std::fabs(affine.velocity - end.velocity) < 1e-15);
 }
 
 }  // namespace dinal::order_test
