@@ -87,7 +87,7 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
     local fit = identify{ data = decay, velocity0 = 0 }
     local x_f = true_system.Rd/true_system.k
     -- Honest work has the error of the fit; four of them are missed by one record in ten thousand.
-    local function bars(name) return 4*fit.std_error[name] end
+    local function bars(name) return 4*fit.error_if_right[name] end
     local viscous -- takes half a second, so only when it is asked for
     local function is_viscous(zeta)
       viscous = viscous or identify{ data = decay, velocity0 = 0, I = given.I, Rd = 0 }
@@ -120,10 +120,11 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
           { true_system.omega0^2, "that is k/I" },
           { true_system.omega0*given.I, "omega0 is to be squared" },
         } },
-      { name = "f", asks = "standard error of zeta", answer = fit.std_error.zeta, tolerance = 0.2, task = "5.5", how = "fit.std_error.zeta",
+      { name = "f", asks = "standard error of zeta", answer = fit.error_if_right.zeta, tolerance = 0.2, task = "5.5", how = "fit.error_if_right.zeta",
         mistakes = {
-          { 2*fit.std_error.zeta, "that is two of them; one is asked for" },
-          { fit.std_error.zeta/fit.zeta, "that is relative to zeta; as it stands in fit.std_error, please" },
+          { fit.std_error.zeta, "that allows for any law of friction; if the model is right, please: fit.error_if_right" },
+          { 2*fit.error_if_right.zeta, "that is two of them; one is asked for" },
+          { fit.error_if_right.zeta/fit.zeta, "that is relative to zeta; as it stands in fit.error_if_right, please" },
         } },
       { name = "g", asks = "Re, from the pull", unit = "torque", answer = true_system.Re, tolerance = 0.03, task = "5.6",
         how = "identify{ data = pull, M = ramp, I, k, C, Rd of the decay, start and offset 0, free = { Re } }",
@@ -157,7 +158,10 @@ page:plot(pull:plot{ x = "t", y = "theta", show = false })]] },
       ["that is k/I"] = "eso es k/I",
       ["omega0 is to be squared"] = "falta elevar omega0 al cuadrado",
       ["that is two of them; one is asked for"] = "esos son dos; se pide uno",
-      ["that is relative to zeta; as it stands in fit.std_error, please"] = "ese es relativo a zeta; délo como está en fit.std_error",
+      ["that allows for any law of friction; if the model is right, please: fit.error_if_right"] =
+        "ese admite otras leyes de rozamiento; se pide el del modelo correcto: fit.error_if_right",
+      ["that is relative to zeta; as it stands in fit.error_if_right, please"] =
+        "ese es relativo a zeta; délo como está en fit.error_if_right",
       ["that is Rd, which brakes it once it moves"] = "eso es Rd, que frena cuando ya se mueve",
       ["too much: it leaves so slowly that the eye sees it late; fit it"] =
         "demasiado: arranca tan despacio que el ojo lo ve tarde; haga el ajuste",

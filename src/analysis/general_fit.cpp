@@ -70,10 +70,10 @@ std::optional<LeastSquares> fit_from(const GeneralQuestion& question, Eigen::Vec
     return fit(question, start, question.measured.size(), many);
 }
 
-/// Widens the errors for noise that is correlated or uneven and for terms that the model may lack, and those of fitted
-/// zeros also for a steady drift.
-void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, const Eigen::MatrixXd& J,
-           Covariance& covariance, GeneralFit& found) {
+/// Widens the errors by the memory and unevenness of the noise, and those of fitted zeros at the first time by a steady
+/// drift. Returns what the model may lack adds to the covariance.
+[[nodiscard]] Eigen::MatrixXd widen(const GeneralQuestion& question, const Eigen::VectorXd& residual,
+                                    const Eigen::MatrixXd& J, Covariance& covariance, GeneralFit& found) {
     const NoiseMemory memory(residual, question.columns, J);
     const Eigen::VectorXd& whole = question.scale.whole;
     const double variance = found.noise * found.noise;
@@ -82,8 +82,8 @@ void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, con
     found.widening = std::max(1.0, widened_by_memory(memory, J, whole, found.noise).maxCoeff());
     found.noise_is_uneven = by_place.mean() > much_wider;
     covariance.matrix = variance * (by_place.asDiagonal() * remembered * by_place.asDiagonal());
-    found.misfit = misfit_of(residual, {memory.none(), found.noise_is_uneven}, question.columns, J,
-                             question.structures(found.value, found.noise, memory.none()));
+    const std::vector<Structure> lacking = question.structures(found.value, found.noise, memory.none());
+    found.misfit = misfit_of(residual, {memory.none(), found.noise_is_uneven}, question.columns, J, lacking);
     for (std::size_t i = 0; i < question.zeros.size(); ++i) {
         if (!question.zeros[i] || covariance.silent[i]) continue;
         const auto place = static_cast<Eigen::Index>(i);
@@ -94,7 +94,9 @@ void widen(const GeneralQuestion& question, const Eigen::VectorXd& residual, con
             variance * by_place[place] * by_place[place] * (steady.covariance(place, place) - remembered(place, place));
         if (found.misfit) found.misfit->shift[place] -= steady.shift[place];
     }
-    if (found.misfit) covariance.matrix += found.misfit->added_covariance();
+    Eigen::MatrixXd more = unseen_covariance(lacking, residual, memory, J, whole, found.noise);
+    if (found.misfit) more += found.misfit->added_covariance();
+    return more;
 }
 
 }  // namespace
@@ -114,8 +116,9 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     if (!best) return {};
     const Eigen::Index n = best->parameters.size(), spare = std::max<Eigen::Index>(1, question.measured.size() - n);
     GeneralFit found{.value = best->parameters,
-                     .error = Eigen::VectorXd::Zero(n),
                      .predicted = question.measured - best->residual,
+                     .error = Eigen::VectorXd::Zero(n),
+                     .if_right = Eigen::VectorXd::Zero(n),
                      .silent = {},
                      .open = {}};
     found.noise = std::sqrt(best->sum / static_cast<double>(spare));
@@ -125,20 +128,25 @@ std::optional<GeneralFit> general_fit(const GeneralQuestion& question) {
     Covariance covariance = covariance_of(J, question.scale.whole, found.noise);
     const double variance = found.noise * found.noise;
     covariance.matrix *= variance;
+    Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(n, n);
     if (found.noise > question.least_noise && is_within_a_step(question, best->residual)) {
         found.widening = std::sqrt(longest_correlation(question, best->residual));
         double spread = found.widening * found.noise;
         for (const double step : question.steps) spread = std::max(spread, found.widening * step / std::sqrt(12.0));
         covariance.matrix =
             spread * spread * stepped(question, found.predicted, J, found.noise, covariance.matrix / variance);
+        const NoiseMemory memory(best->residual, question.columns, J);
+        of_model = unseen_covariance(question.structures(found.value, found.noise, memory.none()), best->residual,
+                                     memory, J, question.scale.whole, found.noise);
     } else if (found.noise > question.least_noise && n > 0) {
-        widen(question, best->residual, J, covariance, found);
+        of_model = widen(question, best->residual, J, covariance, found);
     }
     found.silent = covariance.silent;
     found.open = covariance.open;
     for (Eigen::Index i = 0; i < n; ++i) {
         const double least = 1e-15 * std::fabs(found.value[i]);  // a few ulps
-        found.error[i] = std::max(least, std::sqrt(covariance.matrix(i, i)));
+        found.if_right[i] = std::max(least, std::sqrt(covariance.matrix(i, i)));
+        found.error[i] = std::max(least, std::sqrt(covariance.matrix(i, i) + of_model(i, i)));
     }
     return found;
 }

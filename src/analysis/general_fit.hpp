@@ -29,11 +29,14 @@ struct GeneralQuestion {
 };
 
 struct GeneralFit {
-    Eigen::VectorXd value, error, predicted;  ///< `error` is finite even for silent parameters
-    std::vector<bool> silent, open;           ///< silent: not determined by the data; open: practically without bounds
-    double noise = 0;                         ///< standard deviation of the residual
-    double widening = 1;                      ///< factor of the errors due to correlated residuals
-    bool noise_is_uneven = false;             ///< whether errors are wider because noise is stronger where it matters
+    Eigen::VectorXd value, predicted;
+    /// Finite even for silent parameters. `error` includes how far a wrong model moves the value if the data show that
+    /// or cannot exclude it, `if_right` does not.
+    Eigen::VectorXd error, if_right;
+    std::vector<bool> silent, open;  ///< silent: not determined by the data; open: practically without bounds
+    double noise = 0;                ///< standard deviation of the residual
+    double widening = 1;             ///< factor of the errors due to correlated residuals
+    bool noise_is_uneven = false;    ///< whether errors are wider because noise is stronger where it matters
     std::optional<Misfit> misfit = {};
 
     bool is_wrong() const { return misfit && misfit->is_sure; }

@@ -811,7 +811,7 @@ private:
             const Eigen::VectorXd theta = run.column(motion::Column::theta),
                                   velocity = run.column(motion::Column::velocity);
             const std::span<const double> angles(theta.data(), n), speeds(velocity.data(), n);
-            return responses(pushed, question_.t, MissingTorques(angles, speeds).along(angles, speeds),
+            return responses(pushed, MissingTorques(angles, speeds).along(question_.t, angles, speeds),
                              system.stiffness() * record_.range, deviation());
         }
         Eigen::MatrixXd changes = responses(system, M, run, question_.t);
@@ -833,8 +833,12 @@ private:
         if (!run) return {};
         std::vector<Structure> found{drift(question_.t, columns_, 0, is_white)};
         if (const auto changes = responses_at_best(*system, initial, *run)) {
-            found.push_back({Follows::velocity, changes->leftCols(velocity_torques), {}});
-            found.push_back({Follows::theta, changes->rightCols(theta_torques), {}});
+            found.push_back(
+                {Follows::velocity, changes->leftCols(velocity_torques), {}, plausible_friction(best_filled_.Rd)});
+            found.push_back({Follows::theta,
+                             changes->rightCols(theta_torques),
+                             {},
+                             plausible_spring(best_filled_.k * record_.range / 4)});
         }
         return found;
     }
@@ -866,36 +870,31 @@ private:
         const NoiseMemory memory(left, columns_, weighed.slopes);
         judge(weighed.slopes, found);
         const double spread = noise_of_errors();
-        std::vector<Eigen::MatrixXd> cautious;
+        Eigen::MatrixXd of_model = Eigen::MatrixXd::Zero(count(), count());
         if (!found.is_noise && !found.wild && !is_rounding() && count() > 0) {
-            cautious = widen(weighed.slopes, memory, covariance, found);
+            of_model = widen(weighed.slopes, memory, covariance, found);
         } else if (is_within_a_step() && deviation() > least_noise * record_.range) {
             found.widening = std::sqrt(correlation_length({left.data(), question_.t.size()}));
             covariance.matrix *= found.widening * found.widening;
             allow_for_drift(weighed.slopes, memory, Eigen::VectorXd::Ones(count()), covariance, found);
+            of_model = unseen_covariance(structures(memory.none()), left, memory, weighed.slopes,
+                                         scale_of(best_filled_).whole, spread) /
+                       (spread * spread);
         }
         for (Eigen::Index i = 0; i < count(); ++i) {
             const auto place = static_cast<std::size_t>(i);
             at(found.silent, unknowns_[place]) = covariance.silent[place] || at(has_no_effect_, unknowns_[place]);
         }
-        for (const Eigen::MatrixXd& one : cautious) {
-            set_errors(full_of(one), spread, found);
-            for (const Unknown which : all_unknowns) {
-                at(found.cautious, which) = std::max(at(found.cautious, which), at(found.error, which));
-            }
-            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
-                ratio->cautious = std::max(ratio->cautious, ratio->error);
-            }
-        }
-        const Eigen::MatrixXd full = full_of(covariance.matrix);
+        set_errors(full_of(covariance.matrix), spread, found);
+        found.if_right = found.error;
+        for (IdentifiedRatio* ratio : found.ratios()) ratio->if_right = ratio->error;
+        const Eigen::MatrixXd full = full_of(covariance.matrix + of_model);
         set_errors(full, spread, found);
         if (found.is_unexplained && !found.wild) found.has_errors = false;
         for (const Unknown which : all_unknowns) set_bounds(which, spread, full, covariance.open, found);
         if (found.is_noise) {  // the errors assume a motion, and there may be none
-            found.error = found.cautious = {};
-            for (IdentifiedRatio* ratio : {&found.omega0, &found.zeta, &found.Rd_over_k}) {
-                ratio->error = ratio->cautious = 0;
-            }
+            found.error = found.if_right = {};
+            for (IdentifiedRatio* ratio : found.ratios()) ratio->error = ratio->if_right = 0;
             for (const Unknown which : unknowns_) at(found.silent, which) = true;
             for (const Unknown which : all_unknowns) {
                 at(found.low, which) = -model::never, at(found.high, which) = model::never;
@@ -908,12 +907,11 @@ private:
         return found;
     }
 
-    /// Widens the errors for noise that is correlated or uneven and for terms that the model may lack, and that of the
-    /// offset also for a steady drift. Returns cautious().
-    [[nodiscard]] std::vector<Eigen::MatrixXd> widen(const Eigen::MatrixXd& J, const NoiseMemory& memory,
-                                                     Covariance& covariance, Identified& found) {
+    /// Widens the errors by the memory and unevenness of the noise, and that of the offset at the first time by a
+    /// steady drift. Returns what the model may lack adds to the covariance, in units of noise squared.
+    [[nodiscard]] Eigen::MatrixXd widen(const Eigen::MatrixXd& J, const NoiseMemory& memory, Covariance& covariance,
+                                        Identified& found) {
         const Eigen::VectorXd &left = best_->residual, whole = scale_of(best_filled_).whole;
-        const Eigen::MatrixXd remembered = remembered_covariance(memory, J, whole, found.noise);
         const Eigen::VectorXd by_memory = widened_by_memory(memory, J, whole, found.noise),
                               by_place = widened_by_uneven_noise(memory, left, J, whole, found.noise),
                               wider = by_memory.cwiseProduct(by_place);
@@ -924,38 +922,14 @@ private:
         auto wrong = misfit_of(left, {memory.none(), found.noise_is_uneven}, columns_, J, lacking);
         const Eigen::VectorXd drift = allow_for_drift(J, memory, by_place, covariance, found);
         if (wrong && drift.size() > 0) wrong->shift -= drift;
-        const double variance = found.noise * found.noise;
-        if (wrong) covariance.matrix += wrong->added_covariance() / variance;
+        Eigen::MatrixXd more = unseen_covariance(lacking, left, memory, J, whole, found.noise);
+        if (wrong) more += wrong->added_covariance();
         if (wrong && wrong->is_sure) {
             found.misfit = wrong->follows;
             found.noise_without_misfit = std::min(wrong->noise, found.scatter);
             found.has_errors = wrong->leaves_errors();
         }
-        return cautious(lacking, J, memory, remembered, covariance.matrix, found.noise);
-    }
-
-    /// The covariances of the parameters if friction may fall with the speed, by up to Rd, or the spring may be
-    /// nonlinear: one for each of these torques.
-    std::vector<Eigen::MatrixXd> cautious(std::span<const Structure> lacking, const Eigen::MatrixXd& J,
-                                          const NoiseMemory& memory, const Eigen::MatrixXd& remembered,
-                                          const Eigen::MatrixXd& covariance, double noise) const {
-        std::vector<Eigen::MatrixXd> all;
-        const Eigen::VectorXd whole = scale_of(best_filled_).whole;
-        const auto add = [&](const Eigen::VectorXd& term, double size) {
-            if (!(size > 0)) return;
-            const Nuisance torque = nuisance(term, size, best_->residual, memory, J, whole, noise);
-            all.push_back(covariance + torque.covariance - remembered +
-                          torque.shift * torque.shift.transpose() / (noise * noise));
-        };
-        for (const Structure& one : lacking) {
-            const bool is_friction = one.what == Follows::velocity;
-            if (one.what == Follows::time || question_.gives(is_friction ? Unknown::Rd : Unknown::k)) continue;
-            const double size = is_friction ? best_filled_.Rd : best_filled_.k * record_.range / 4;
-            for (Eigen::Index i = is_friction ? first_falling : first_bent; i < one.columns.cols(); ++i) {
-                add(one.columns.col(i), size);
-            }
-        }
-        return all;
+        return more / (found.noise * found.noise);
     }
 
     /// Corrects the offset to its value at the first time, in case the zero drifts steadily, and widens its error.

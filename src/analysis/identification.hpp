@@ -53,18 +53,21 @@ struct IdentifyQuestion {
 
 struct IdentifiedRatio {
     double value = 0, error = 0;  ///< error: one standard deviation
-    double cautious = 0;          ///< the error if friction may fall with the speed or the spring be nonlinear
+    double if_right = 0;          ///< the error if the model is right
 };
 
 struct Identified {
-    OfEach<double> value, error;  ///< error: one standard deviation; 0 for given parameters
-    OfEach<double> cautious;  ///< error if friction may fall with the speed or the spring be nonlinear; 0: not computed
+    /// error: one standard deviation, 0 for given parameters; it includes how far a wrong model moves the value if the
+    /// record shows that or cannot exclude it
+    OfEach<double> value, error;
+    OfEach<double> if_right;  ///< the error if the model is right
     OfEach<bool> silent;      ///< silent: not determined by the record
     /// for silent parameters: values from low to high fit about equally well
     OfEach<double> low, high;
     IdentifiedRatio omega0{}, zeta{}, Rd_over_k{};  ///< determined by a free decay
-    std::vector<double> predicted;                  ///< at the times of the record
-    double noise = 0;                               ///< standard deviation of the residual
+    std::array<IdentifiedRatio*, 3> ratios() { return {&omega0, &zeta, &Rd_over_k}; }
+    std::vector<double> predicted;  ///< at the times of the record
+    double noise = 0;               ///< standard deviation of the residual
     /// numbers of samples at the least and greatest value if these clip the record
     std::size_t cut_low = 0, cut_high = 0;
     double scatter = 0;            ///< differences of neighbouring samples that a smooth motion would not have

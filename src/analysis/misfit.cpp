@@ -105,12 +105,41 @@ MissingTorques::Row MissingTorques::at(double theta, double velocity, double way
     return row;
 }
 
-Eigen::MatrixXd MissingTorques::along(std::span<const double> theta, std::span<const double> velocity) const {
-    Eigen::MatrixXd torques(static_cast<Eigen::Index>(theta.size()), velocity_torques + theta_torques);
-    for (std::size_t i = 0; i < theta.size(); ++i) {
-        torques.row(static_cast<Eigen::Index>(i)) = at(theta[i], velocity[i], sign_of(velocity[i]));
+MissingTorques::Path MissingTorques::along(std::span<const double> times, std::span<const double> theta,
+                                           std::span<const double> velocity) const {
+    constexpr std::size_t enough = 1000, most = 4;  // points in all, and between two samples
+    const std::size_t n = times.size(), parts = std::clamp<std::size_t>(enough / n, 1, most);
+    Path path;
+    const auto add = [&](double t, double angle, double speed, double way) {
+        path.t.push_back(t);
+        path.torques.push_back(at(angle, speed, way));
+    };
+    add(times[0], theta[0], velocity[0], sign_of(velocity[0]));
+    for (std::size_t i = 0; i + 1 < n; ++i) {
+        // A cubic with the angles and velocities of both samples.
+        const double h = times[i + 1] - times[i], rise = theta[i + 1] - theta[i], v = h * velocity[i],
+                     bend = 3 * rise - 2 * v - h * velocity[i + 1], twist = v + h * velocity[i + 1] - 2 * rise;
+        const auto angle = [&](double x) { return theta[i] + x * (v + x * (bend + x * twist)); };
+        double before = 0, speed = velocity[i];
+        for (std::size_t part = 1; part <= parts; ++part) {
+            const bool is_last = part == parts;
+            const double x = static_cast<double>(part) / static_cast<double>(parts),
+                         next = is_last ? velocity[i + 1] : (v + x * (2 * bend + 3 * x * twist)) / h;
+            if (speed * next < 0) {
+                constexpr double beside = 1e-6;
+                const double turn = before + (x - before) * speed / (speed - next);
+                add(times[i] + (turn - beside) * h, angle(turn), 0, sign_of(speed));
+                add(times[i] + (turn + beside) * h, angle(turn), 0, sign_of(next));
+            }
+            add(is_last ? times[i + 1] : times[i] + x * h, is_last ? theta[i + 1] : angle(x), next, sign_of(next));
+            before = x, speed = next;
+        }
     }
-    return torques;
+    // A turn just at a sample would give two points at one time.
+    for (std::size_t i = 1; i < path.t.size(); ++i) {
+        path.t[i] = std::max(path.t[i], std::nextafter(path.t[i - 1], std::numeric_limits<double>::infinity()));
+    }
+    return path;
 }
 
 Eigen::MatrixXd responses(const model::Oscillator& system, const model::Excitation& M, const motion::Run& run,
@@ -153,29 +182,27 @@ Eigen::MatrixXd responses(const model::Oscillator& system, const model::Excitati
     return changes;
 }
 
-std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
-                                         const Eigen::MatrixXd& torques, double whole, double noise) {
+std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, const MissingTorques::Path& path, double whole,
+                                         double noise) {
     const auto here = pushed(model::Excitation());
     if (!here) return {};
-    Eigen::MatrixXd columns(here->size(), torques.cols());
+    constexpr Eigen::Index all = velocity_torques + theta_torques;
+    Eigen::MatrixXd columns(here->size(), all);
+    constexpr double first = 1e-6;  // the part of `typical` that derivative() tries first
     double step = 1e-3 * whole;
-    for (Eigen::Index i = 0; i < torques.cols(); ++i) {
-        auto samples = std::make_shared<model::terms::Samples>();
-        samples->t.assign(times.begin(), times.end());
-        samples->M.assign(torques.col(i).begin(), torques.col(i).end());
-        const auto torque = model::Excitation::make(model::terms::Polyline(std::move(samples))).value();
-        constexpr int most_tries = 6;
-        for (int tries = 0; tries < most_tries; ++tries) {
-            const auto there = pushed(torque.scaled(step));
-            if (!there) return {};
-            columns.col(i) = (*there - *here) / step;
-            const double change = (*there - *here).norm();
-            // change of the prediction relative to the noise, over all samples
-            constexpr double least = 0.05, most = 20, widest = 1e3;
-            if (change > least * noise && change < most * noise) break;
-            step *= std::clamp(noise / std::max(change, 1e-300), 1 / widest, widest);
-        }
-        step = std::clamp(step, 1e-9 * whole, whole);
+    for (Eigen::Index i = 0; i < all; ++i) {
+        const Prediction changed = [&](const Eigen::VectorXd& coefficient) -> std::optional<Eigen::VectorXd> {
+            if (coefficient[0] == 0) return here;
+            auto samples = std::make_shared<model::terms::Samples>();
+            samples->t = path.t;
+            for (const auto& torques : path.torques) samples->M.push_back(coefficient[0] * torques[i]);
+            return pushed(model::Excitation::make(model::terms::Polyline(std::move(samples))).value());
+        };
+        const auto one = [](double x) { return Eigen::VectorXd::Constant(1, x); };
+        const auto column = derivative(changed, one(0), {one(step / first), one(-1e300), one(whole), one(0)}, noise);
+        if (!column) return {};
+        columns.col(i) = *column;
+        step = std::clamp(noise / std::max(column->norm(), 1e-300), 1e-9 * whole, whole);
     }
     return columns;
 }
@@ -207,7 +234,7 @@ private:
 };
 
 /// Significance in standard deviations: from the first a term adds to the errors, from the second it counts as present.
-constexpr double possible = 2.2, beyond_chance = 4;
+constexpr double possible = 2.2, beyond_chance = 3.5;
 
 /// The matrix [a b]; missing rows are zero.
 Eigen::MatrixXd beside(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -383,6 +410,57 @@ Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorX
     const Eigen::MatrixXd all = beside(slopes, term);
     return {(covariance_of(all, sizes, noise).matrix * (all.transpose() * residual)).head(n),
             remembered_covariance(memory, all, sizes, noise).topLeftCorner(n, n)};
+}
+
+Plausible plausible_friction(double Rd) {
+    Plausible friction{Eigen::VectorXd::Zero(velocity_torques), true};
+    friction.sizes.tail(velocity_torques - first_falling).setConstant(Rd);
+    return friction;
+}
+
+Plausible plausible_spring(double bend) {
+    Plausible spring{Eigen::VectorXd::Zero(theta_torques), false};
+    spring.sizes.tail(theta_torques - first_bent).setConstant(bend);
+    return spring;
+}
+
+Eigen::MatrixXd unseen_covariance(std::span<const Structure> structures, const Eigen::VectorXd& residual,
+                                  const NoiseMemory& memory, const Eigen::MatrixXd& slopes,
+                                  const Eigen::VectorXd& whole, double noise) {
+    const Eigen::MatrixXd white = memory.whitened(slopes),
+                          taken = covariance_of(white, whole, noise).matrix * white.transpose(),
+                          shifts = covariance_of(slopes, whole, noise).matrix * slopes.transpose();
+    const Eigen::VectorXd left = memory.whitened(residual);
+    const auto spare = static_cast<double>(std::max<Eigen::Index>(1, left.size() - slopes.cols()));
+    const double variance = left.squaredNorm() / spare;
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(slopes.cols(), slopes.cols());
+    for (const Structure& structure : structures) {
+        const Eigen::VectorXd& sizes = structure.plausible.sizes;
+        const auto count = static_cast<double>((sizes.array() > 0).count());
+        double odds = 1;  // of all models to the fitted one
+        Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(slopes.cols(), slopes.cols());
+        for (Eigen::Index i = 0; i < sizes.size(); ++i) {
+            if (!(sizes[i] > 0)) continue;
+            const Eigen::VectorXd column = memory.whitened(structure.columns.col(i)),
+                                  own = column - white * (taken * column), shift = shifts * structure.columns.col(i);
+            // The coefficient is Gaussian before and after the record is seen, or the half of a Gaussian.
+            const double known = 1 / (sizes[i] * sizes[i]) + own.squaredNorm() / variance,
+                         mean = own.dot(left) / variance / known, spread = 1 / std::sqrt(known), ratio = mean / spread;
+            constexpr double most = 700;  // of an exponent
+            double weight = spread / sizes[i] * std::exp(std::min(most, ratio * ratio / 2)) / count,
+                   square = mean * mean + spread * spread;
+            if (structure.plausible.has_sign) {
+                const double part = std::erfc(ratio / std::numbers::sqrt2) / 2,  // of the Gaussian that is not positive
+                    height = std::exp(-ratio * ratio / 2) / std::sqrt(2 * std::numbers::pi);
+                weight *= 2 * part;
+                square = part > 0 ? square - mean * spread * height / part : 0;
+            }
+            odds += weight;
+            sum += weight * square * shift * shift.transpose();
+        }
+        all += sum / odds;
+    }
+    return all;
 }
 
 bool is_white(std::span<const double> residual, double unusual) {

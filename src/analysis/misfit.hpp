@@ -33,6 +33,16 @@ inline constexpr Eigen::Index first_falling = 2;
 /// The first of those theta torques that a linear spring does not have.
 inline constexpr Eigen::Index first_bent = 1;
 
+/// How large a torque may be that a model lacks: standard deviations of its coefficient, 0: certainly none. Friction
+/// that falls with the speed is a torque against the motion, so its coefficient has one sign.
+struct Plausible {
+    Eigen::VectorXd sizes = {};
+    bool has_sign = false;  ///< whether the coefficient cannot be positive
+};
+/// Friction that falls by about `Rd`, or a spring that differs from a straight line by about `bend`.
+Plausible plausible_friction(double Rd);
+Plausible plausible_spring(double bend);
+
 class MissingTorques {
 public:
     using Row = Eigen::Matrix<double, 1, velocity_torques + theta_torques>;
@@ -41,8 +51,13 @@ public:
     MissingTorques(std::span<const double> theta, std::span<const double> velocity);
     /// `way` is the sign of the velocity, at a turn that before or after it, and 0 for a mass at rest.
     Row at(double theta, double velocity, double way) const;
-    /// One row for each state.
-    Eigen::MatrixXd along(std::span<const double> theta, std::span<const double> velocity) const;
+    /// The torques along a motion with these samples: also between them and at both sides of each turn, where they
+    /// jump.
+    struct Path {
+        std::vector<double> t = {};
+        std::vector<Row> torques = {};
+    };
+    Path along(std::span<const double> times, std::span<const double> theta, std::span<const double> velocity) const;
 
 private:
     double far_, fast_;
@@ -55,10 +70,10 @@ Eigen::MatrixXd responses(const model::Oscillator& system, const model::Excitati
 
 /// A prediction with this torque added to M; empty if it cannot be evaluated.
 using Pushed = std::function<std::optional<Eigen::VectorXd>(const model::Excitation& added)>;
-/// The changes of the prediction caused by each of these torques, from finite differences of about the noise;
-/// `whole` is a large torque.
-std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, std::span<const double> times,
-                                         const Eigen::MatrixXd& torques, double whole, double noise);
+/// The changes of the prediction caused by each of these torques, by differences of about the noise; `whole` is a large
+/// torque.
+std::optional<Eigen::MatrixXd> responses(const Pushed& pushed, const MissingTorques::Path& path, double whole,
+                                         double noise);
 
 enum class Follows { velocity, theta, time };
 inline constexpr std::array<std::string_view, 3> follows_names{"velocity", "theta", "time"};
@@ -68,6 +83,7 @@ struct Structure {
     Follows what;
     Eigen::MatrixXd columns;  ///< changes of the prediction
     Eigen::MatrixXd faster;   ///< regressors for comparison with the first; empty: compared with the whole residual
+    Plausible plausible = {};
 };
 /// A slow drift of the numbers in `column`. If the residual is white, there are no faster regressors for comparison.
 Structure drift(std::span<const double> times, std::span<const int> columns, int column, bool is_white);
@@ -104,6 +120,12 @@ struct Nuisance {
 };
 Nuisance nuisance(const Eigen::VectorXd& term, double size, const Eigen::VectorXd& residual, const NoiseMemory& memory,
                   const Eigen::MatrixXd& slopes, const Eigen::VectorXd& whole, double noise);
+
+/// What torques that the model lacks add to the covariance of the parameters, in squares of their units. It is the mean
+/// over models: as likely as the fitted one, before the record is seen, is one with each of the plausible torques.
+Eigen::MatrixXd unseen_covariance(std::span<const Structure> structures, const Eigen::VectorXd& residual,
+                                  const NoiseMemory& memory, const Eigen::MatrixXd& slopes,
+                                  const Eigen::VectorXd& whole, double noise);
 
 /// Returns whether the autocorrelation (up to 40 lags, by Ljung and Box) is within `unusual` standard deviations of
 /// chance.

@@ -110,9 +110,7 @@ using analysis::Unknown;
 struct FitAnswer {
     analysis::IdentifyQuestion question;
     analysis::Identified found;
-    std::vector<std::pair<std::string, double>> values, errors;
-    /// errors that are much wider if friction may fall with the speed or the spring be nonlinear
-    std::vector<std::pair<std::string, double>> cautious = {};
+    std::vector<std::pair<std::string, double>> values, errors, errors_if_right;
     /// parameters that the record does not determine, and their bounds
     std::vector<std::pair<std::string, std::vector<double>>> silent;
     std::optional<model::System> system;
@@ -849,11 +847,21 @@ private:
             return changed;
         };
         const double whole = system_.bodies[system_.joints[joint].first()].inertia * speed_ / time_;
-        const Eigen::MatrixXd torques = analysis::MissingTorques(theta, velocity).along(theta, velocity);
-        const auto changes = analysis::responses(pushed, t_, torques, whole, noise);
+        const auto torques = analysis::MissingTorques(theta, velocity).along(t_, theta, velocity);
+        const auto changes = analysis::responses(pushed, torques, whole, noise);
         if (!changes) return;
-        found.push_back({analysis::Follows::velocity, changes->leftCols(analysis::velocity_torques), {}});
-        found.push_back({analysis::Follows::theta, changes->rightCols(analysis::theta_torques), {}});
+        const model::System fitted = with(p);
+        const model::Joint& own = fitted.joints[joint];
+        const auto* dry = own.friction.law.as<model::laws::Coulomb>();
+        const auto [low, high] = std::ranges::minmax_element(theta);
+        found.push_back({analysis::Follows::velocity,
+                         changes->leftCols(analysis::velocity_torques),
+                         {},
+                         analysis::plausible_friction(dry != nullptr ? dry->kinetic : 0)});
+        found.push_back({analysis::Follows::theta,
+                         changes->rightCols(analysis::theta_torques),
+                         {},
+                         analysis::plausible_spring(own.spring.none() ? own.stiffness * (*high - *low) / 4 : 0)});
     }
 
     /// Pushes M plus the added torque.
@@ -956,7 +964,9 @@ private:
             }
             fit.values.emplace_back(free_[i].name, value);
             const bool is_silent = found.silent[i], is_known = !found.is_wrong() || found.misfit->leaves_errors();
-            fit.errors.emplace_back(free_[i].name, is_silent ? 0 : is_known ? found.error[place] : withheld);
+            const auto told = [&](double error) { return is_silent ? 0 : is_known ? error : withheld; };
+            fit.errors.emplace_back(free_[i].name, told(found.error[place]));
+            fit.errors_if_right.emplace_back(free_[i].name, found.is_wrong() ? withheld : told(found.if_right[place]));
             if (is_silent) add_bounds(free_[i], value, found, place, fit);
         }
         if (found.is_wrong()) {
@@ -1017,22 +1027,23 @@ private:
 
 void name_values(FitAnswer& fit) {
     const analysis::Identified& found = fit.found;
-    const auto add = [&fit](std::string_view name, double value, double error, double cautious) {
+    const auto add = [&fit](std::string_view name, double value, double error, double if_right) {
         fit.values.emplace_back(name, value);
-        const double known =
-            fit.found.has_errors ? std::max(error, 1e-15 * std::fabs(value)) : withheld;  // at least a few ulps
-        fit.errors.emplace_back(name, error > 0 ? known : 0);
-        constexpr double much = 1.5;
-        if (fit.found.has_errors && error > 0 && cautious > much * error) fit.cautious.emplace_back(name, cautious);
+        const auto told = [&](double known) {
+            const double least = 1e-15 * std::fabs(value);  // a few ulps
+            return !(known > 0) ? 0 : fit.found.has_errors ? std::max(known, least) : withheld;
+        };
+        fit.errors.emplace_back(name, told(error));
+        fit.errors_if_right.emplace_back(name, fit.found.misfit.empty() ? told(if_right) : withheld);
     };
     const bool absolute = fit.question.M || fit.question.given.I || fit.question.given.k;
     if (!absolute) fit.units.M.clear();
-    add("omega0", found.omega0.value, found.omega0.error, found.omega0.cautious);
-    add("zeta", found.zeta.value, found.zeta.error, found.zeta.cautious);
-    add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error, found.Rd_over_k.cautious);
+    add("omega0", found.omega0.value, found.omega0.error, found.omega0.if_right);
+    add("zeta", found.zeta.value, found.zeta.error, found.zeta.if_right);
+    add("Rd_over_k", found.Rd_over_k.value, found.Rd_over_k.error, found.Rd_over_k.if_right);
     for (const Unknown which : analysis::all_unknowns) {
         if (!absolute && which < Unknown::theta0) continue;
-        add(analysis::name(which), at(found.value, which), at(found.error, which), at(found.cautious, which));
+        add(analysis::name(which), at(found.value, which), at(found.error, which), at(found.if_right, which));
     }
     if (absolute && found.is_noise) {
         for (const char* name : {"omega0", "zeta", "Rd_over_k"}) fit.silent.push_back({name, {0, INFINITY}});
@@ -1260,6 +1271,7 @@ std::string fit_summary(const FitAnswer& fit) {
     std::size_t width = 10;
     for (const auto& value : fit.values) width = std::max(width, value.first.size());
     auto unlisted = fit.silent;
+    bool is_wider = false;
     for (std::size_t i = 0; i < fit.values.size(); ++i) {
         const auto& [name, value] = fit.values[i];
         const double error = fit.errors[i].second;
@@ -1275,6 +1287,11 @@ std::string fit_summary(const FitAnswer& fit) {
         text += error > 0 ? fmt::format(" +- {:.2g}", error) : "";
         text.erase(text.find_last_not_of(' ') + 1);
         text = model::with_unit(std::move(text), unit);
+        constexpr double much = 1.5;
+        if (const double if_right = fit.errors_if_right[i].second; error > much * if_right && if_right > 0) {
+            text += fmt::format(" ({:.2g} if the model is right)", if_right);
+            is_wider = true;
+        }
     }
     const double k = fit.found.value.k;
     for (const auto& [name, bounds] : unlisted) {
@@ -1286,11 +1303,9 @@ std::string fit_summary(const FitAnswer& fit) {
             text += fmt::format("\n  the record says nothing about {}", name);
         }
     }
-    if (!fit.cautious.empty()) {
-        std::vector<std::string> wider;
-        for (const auto& [name, error] : fit.cautious) wider.push_back(fmt::format("{} +- {:.2g}", name, error));
-        text += fmt::format("\n  if friction may fall with the speed or the spring be nonlinear: {}",
-                            fmt::join(wider, ", "));
+    if (is_wider) {
+        text +=
+            "\n  the wider errors allow for friction that falls with the speed and a bent spring, unseen in this record";
     }
     for (const std::string& note : notes_of_fit(fit)) text += "\n  " + note;
     return text;
@@ -1300,9 +1315,9 @@ std::vector<std::string> silent_names(const FitAnswer& fit) {
     return names_of_pairs(fit.silent);
 }
 
-/// The errors of the values that the record determines, as far as they are not withheld (nan).
-std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit) {
-    auto errors = fit.errors;
+/// The errors that are not withheld, of values that the record determines.
+std::vector<std::pair<std::string, double>> known_errors(const FitAnswer& fit,
+                                                         std::vector<std::pair<std::string, double>> errors) {
     std::erase_if(errors, [&fit](const auto& error) {
         return std::isnan(error.second) ||
                std::ranges::any_of(fit.silent, [&error](const auto& one) { return one.first == error.first; });
@@ -1328,19 +1343,19 @@ constexpr lua::Member fit_members[] = {
     {lua::a_value<FitHandle, names_of_fit>,
      {"fit.names -> table", "The names of the values that it has.",
       DINAL_FIT "print(fit.names[1], fit[fit.names[1]] == fit.omega0)  --> omega0\ttrue"}},
-    {lua::a_value<FitHandle, known_errors>,
+    {lua::a_value<FitHandle, [](const FitAnswer& fit) { return known_errors(fit, fit.errors); }>,
      {"fit.std_error -> table",
-      "The standard errors by name: if the model is right, the truth lies within two of them in 19 of 20 records. Given "
-      "values have 0. They are wider if neighbouring residuals are alike, or if the residual hints at something that the "
-      "model lacks (another law of friction, a nonlinear spring, a drifting zero): by how far that would move each value. "
+      "The standard errors by name: the truth lies within two of them in 19 of 20 records. Given values have 0. They include "
+      "how far values would be off if friction fell with the speed or the spring were nonlinear, as likely as the record leaves "
+      "that, and what a residual that hints at it or at a drifting zero tells. "
       "They are nil if the model is so wrong that they would mean nothing (fit.misfit), and of the names in fit.silent. "
-      "What the record cannot show they do not contain: friction that falls evenly with the speed looks like more Rd and less C.",
+      "What no record shows they do not contain: friction that falls evenly with the speed looks like more Rd and less C.",
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
-    {lua::a_value<FitHandle, &FitAnswer::cautious>,
-     {"fit.cautious_error -> table",
-      "The standard errors that are more than 1.5 times wider if friction may fall with the speed, by up to Rd, or the spring "
-      "may be nonlinear, unseen in this record.",
-      DINAL_FIT "print(fit.cautious_error.zeta > fit.std_error.zeta)  --> true"}},
+    {lua::a_value<FitHandle, [](const FitAnswer& fit) { return known_errors(fit, fit.errors_if_right); }>,
+     {"fit.error_if_right -> table",
+      "The same if the model is right: friction the same at all speeds, a linear spring, a zero that does not drift. They are "
+      "nil if the residual shows that it is not (fit.misfit).",
+      DINAL_FIT "print(fit.error_if_right.zeta < fit.std_error.zeta)  --> true"}},
     {lua::a_value<FitHandle, silent_names>,
      {"fit.silent -> table",
       "The names of values that the record does not determine: Re of a free decay or of a motion without stops; "

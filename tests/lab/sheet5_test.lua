@@ -10,7 +10,7 @@ walk.sheet("5-identification", function(session)
   walk.right("5d", fit.offset)
   local k = given.I*fit.omega0^2
   walk.right("5e", k)
-  walk.right("5f", fit.std_error.zeta)
+  walk.right("5f", fit.error_if_right.zeta)
 
   local known = identify{ data = record, velocity0 = 0, I = given.I }
   local driven = identify{ data = pull, M = excitation.ramp{ slope = given.slope }, I = given.I, k = known.k, C = known.C,
@@ -31,8 +31,9 @@ walk.sheet("5-identification", function(session)
     { "5d", -fit.offset, "the size is right" },
     { "5d", record.theta[#record], "came to rest" },
     { "5e", fit.omega0^2, given.I == 1 and "right" or "that is k/I" },
-    { "5f", 2*fit.std_error.zeta, "two of them" },
-    { "5f", fit.std_error.zeta/fit.zeta, "relative to zeta" },
+    { "5f", fit.std_error.zeta, "any law of friction" },
+    { "5f", 2*fit.error_if_right.zeta, "two of them" },
+    { "5f", fit.error_if_right.zeta/fit.zeta, "relative to zeta" },
     { "5g", fit.Rd_over_k*k, "that is Rd" },
     { "5g", Re/k, "that is an angle" },
   }

@@ -7,7 +7,8 @@ local function noise(n, std, seed) return vector.normal { n = n, std = std, seed
 local function found(fit, truth, most)
     fits(fit, truth, 5)
     for name, value in pairs(truth) do
-        assert(fit.std_error[name] > 0 and fit.std_error[name] < (most or 0.1) * math.abs(value), name .. " " .. fit.std_error[name])
+        local error = fit.error_if_right[name]
+        assert(error > 0 and error < (most or 0.1) * math.abs(value), name .. " " .. error)
     end
 end
 

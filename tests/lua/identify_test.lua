@@ -53,12 +53,12 @@ test("errors are those of the least squares of a sine: in whole periods its part
     local run = swings:simulate{ theta0 = 1, t_end = t_end*(1 - 1/n), dt = t_end/n }
     local known = { data = record(run, 5, 0.01), I = 1, C = 0, Rd = 0, Re = 0 }
     local fit = identify(merged(known, { k = swings.k }))
-    near(fit.std_error.offset, 2*fit.noise/n^0.5, 0.01*fit.std_error.offset)  -- a line at its first time: the zero may drift
-    near(fit.std_error.theta0, fit.noise*(2/n)^0.5, 0.01*fit.std_error.theta0)
-    near(fit.std_error.velocity0, omega*fit.noise*(2/n)^0.5, 0.01*fit.std_error.velocity0)
+    near(fit.error_if_right.offset, 2*fit.noise/n^0.5, 0.01*fit.error_if_right.offset)  -- a line at its first time: the zero may drift
+    near(fit.error_if_right.theta0, fit.noise*(2/n)^0.5, 0.01*fit.error_if_right.theta0)
+    near(fit.error_if_right.velocity0, omega*fit.noise*(2/n)^0.5, 0.01*fit.error_if_right.velocity0)
     fit = identify(known)  -- the bound of Rife and Boorstyn for a frequency whose phase is unknown
-    near(fit.std_error.omega0, fit.noise/t_end*(24/n)^0.5, 0.01*fit.std_error.omega0)
-    near(fit.std_error.k, 2*omega*fit.std_error.omega0, 1e-3*fit.std_error.k)
+    near(fit.error_if_right.omega0, fit.noise/t_end*(24/n)^0.5, 0.01*fit.error_if_right.omega0)
+    near(fit.error_if_right.k, 2*omega*fit.error_if_right.omega0, 1e-3*fit.error_if_right.k)
 end)
 
 test("a record that is cut off is fitted as such, and the fit says so", function()

@@ -444,9 +444,9 @@ function support.record(run, seed, std, zero)
     return { t = run.t, theta = support.noisy(run, seed, std) + (zero or 0) }
 end
 
---- Each of these numbers of the fit is within so many of its errors (4) of the truth.
+--- Each of these numbers of the fit of a right model is within so many of its errors (4) of the truth.
 function support.fits(fit, truth, errors)
-    for name, value in pairs(truth) do support.near(fit[name], value, (errors or 4) * fit.std_error[name]) end
+    for name, value in pairs(truth) do support.near(fit[name], value, (errors or 4) * fit.error_if_right[name]) end
 end
 
 -- What z = (found - true) / error must be: 95 % of all within 1.96, and its root mean square, which is the ratio to the
@@ -455,8 +455,8 @@ function support.judge()
     local inside, all, square = 0, 0, 0
     return function(fit, truth)
         for name, true_value in pairs(truth) do
-            if (fit.std_error[name] or 0) > 0 then
-                local z = (fit[name] - true_value) / fit.std_error[name]
+            if (fit.error_if_right[name] or 0) > 0 then
+                local z = (fit[name] - true_value) / fit.error_if_right[name]
                 inside, all, square = inside + (math.abs(z) <= 1.96 and 1 or 0), all + 1, square + z * z
             end
         end
