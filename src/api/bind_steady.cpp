@@ -309,7 +309,7 @@ constexpr lua::Member steady_members[] = {
      {"s.multipliers -> table",
       "The Floquet multipliers, each { re, im, abs }: the factors of small disturbances in one period. There are "
       "two, and one for each state; a limit cycle has one less, without the trivial one. nil with delayed and "
-      "sampled controllers.",
+      "sampled controllers, and where the motion is not smooth.",
       "s = system{ I = 1, k = 1, C = 0.5 }:steady{ M = excitation.harmonic{ omega = 1 } }\n"
       "print(string.format(\"%.6f %.6f\", s.multipliers[1].abs, math.exp(-math.pi / 2)))  --> 0.207880 0.207880"}},
     {lua::a_value<SteadyHandle, found_fact<&analysis::SteadyMotion::stable>>,
