@@ -282,7 +282,7 @@ private:
             const bool moves = spot->motion.status == SteadyStatus::steady;
             if (moves && is_family(*spot) != is_family(walk.now)) return path_;
             if (!add_step(walk, *spot, specials_of_step(walk, *spot, on, moved))) return ended(WalkEnd::range);
-            if (handle_met_point() || repeats_a_fold()) return path_;
+            if (handle_met_point()) return path_;
             if (is_closed(walk, *spot, on, step.length)) return ended(WalkEnd::closed);
             if (has_vanished(*spot)) return ended(WalkEnd::vanished);
             walk.passed = Passed{walk.now.x, slope_by_p(walk.ahead), walk.now.p};
@@ -374,18 +374,6 @@ private:
     bool is_closed(const Progress& walk, const Spot& spot, const Vector& on, double length) const {
         return !walk.recentred && path_.points.size() > 10 && (scaled(spot) - scaled(walk.first)).norm() < length &&
                on.dot(walk.first_ahead) > straight;
-    }
-
-    /// Returns whether the last fold was passed before: a corner, taken the wrong way, led the walk back onto its path.
-    bool repeats_a_fold() const {
-        const auto last =
-            std::ranges::find(path_.points.rbegin(), path_.points.rend(), BranchKind::fold, &BranchPoint::kind);
-        if (last == path_.points.rend()) return false;
-        constexpr double same = 1e-6;
-        return std::any_of(last + 1, path_.points.rend(), [&](const BranchPoint& point) {
-            return point.kind == BranchKind::fold && std::fabs(point.parameter - last->parameter) <= same * range_ &&
-                   std::fabs(point.motion.amplitude - last->motion.amplitude) <= same * last->motion.amplitude;
-        });
     }
 
     bool has_vanished(const Spot& spot) const {
@@ -749,8 +737,21 @@ private:
         return true;
     }
 
+    /// Returns whether the walk has passed this fold before: taken the wrong way, a corner leads back onto the path.
+    bool repeats_fold(const Spot& spot) const {
+        constexpr double there = 1e-6;
+        return std::ranges::any_of(path_.points, [&](const BranchPoint& point) {
+            return point.kind == BranchKind::fold && std::fabs(point.parameter - spot.p) <= there * range_ &&
+                   std::fabs(point.motion.amplitude - spot.motion.amplitude) <= there * spot.motion.amplitude;
+        });
+    }
+
     void add(const Spot& spot, BranchKind kind) {
-        if (kind == BranchKind::fold && undoes_fold(spot)) kind = BranchKind::point;
+        if (kind == BranchKind::fold && undoes_fold(spot)) {
+            kind = BranchKind::point;
+        } else if (kind == BranchKind::fold && repeats_fold(spot)) {
+            kind = BranchKind::point, met_again_ = true;
+        }
         const bool asked = std::binary_search(values_.begin(), values_.end(), spot.p);
         if (asked) {
             constexpr double there = 1e-6;

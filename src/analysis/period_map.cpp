@@ -171,17 +171,24 @@ Eigen::Matrix2d PeriodMap::free_motion(double length) const {
     return matrix;
 }
 
+/// M at a time that may be outside of the run: a user's function need not have values there, so M is continued by its
+/// period.
+double PeriodMap::M_around(double t) const {
+    const double later = t < start_ ? length_ : t > start_ + length_ ? -length_ : 0;
+    return (later == 0 ? 1 : sign_) * drive_.M().value(t + later);
+}
+
 /// The limit from the left of M', which determines a breakaway at t.
 double PeriodMap::slope_before(double t) const {
     const double h = 1e-5 * std::min(length_, 2 * std::numbers::pi / omega_);
-    const double now = drive_.M().value_before(t), one = drive_.M().value(t - h), two = drive_.M().value(t - 2 * h);
+    const double now = drive_.M().value_before(t), one = M_around(t - h), two = M_around(t - 2 * h);
     return (3 * now - 4 * one + two) / (2 * h);
 }
 
 /// Returns whether M jumps within reach of differences around t; `pull` is the size of torques there.
 bool PeriodMap::jumps_at(double t, double pull) const {
     const double reach = 1e-9 * length_, clearly = 1e-6 * (std::fabs(pull) + system_.breakaway());
-    return std::fabs(drive_.M().value(t + reach) - drive_.M().value_before(t - reach)) > clearly;
+    return std::fabs(M_around(t + reach) - M_around(t - reach)) > clearly;
 }
 
 void PeriodMap::differentiate(const std::vector<Stretch>& parts, MapStep& step) const {

@@ -88,6 +88,7 @@ private:
     MapStep step_of_run(const motion::Run& run, const std::vector<Stretch>& parts) const;
     void differentiate(const std::vector<Stretch>& parts, MapStep& step) const;
     Eigen::Matrix2d free_motion(double length) const;
+    double M_around(double t) const;
     double slope_before(double t) const;
     bool jumps_at(double t, double pull) const;
 

@@ -327,8 +327,9 @@ TorqueRange extremes(const model::Excitation& excitation, const Repetition& repe
         see(excitation.value_before(jump));
         jump = excitation.next_break(jump);
     }
-    double before = excitation.value(repeats.start - h), now = excitation.value(repeats.start);
-    for (int i = 0; i < pieces; ++i) {
+    // A user's function need not have values before the start.
+    double before = excitation.value(repeats.start), now = excitation.value(repeats.start + h);
+    for (int i = 1; i <= pieces; ++i) {
         const double t = repeats.start + i * h, next = excitation.value(t + h);
         see(now);
         if (now >= before && now >= next && now > range.high - 1e-3 * (range.high - range.low)) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "analysis/recurrence.hpp"
+#include "analysis/returns.hpp"
 #include "analysis/single_sine.hpp"
 #include "analysis/steady.hpp"
 #include "model/controller.hpp"
@@ -196,9 +197,9 @@ namespace {
 
 class SteadyStory : text::Prose {
 public:
-    /// The names of several bodies; empty for one.
-    SteadyStory(const SteadyMotion& motion, bool timeless, const std::vector<std::string>& names)
-        : motion_(motion), timeless_(timeless), names_(names) {}
+    /// The names of several bodies; empty for one. `remembers`: whether a controller samples or waits.
+    SteadyStory(const SteadyMotion& motion, bool timeless, bool remembers, const std::vector<std::string>& names)
+        : motion_(motion), timeless_(timeless), remembers_(remembers), names_(names) {}
 
     void tell(const SteadyShape& shape, bool sampled, double period) {
         switch (motion_.status) {
@@ -326,15 +327,14 @@ private:
             }
         }
     }
-    bool ends_a_run() const { return motion_.by_returns.run && !motion_.by_returns.question; }
     void describe_memory() {
-        if (!ends_a_run()) return;
+        if (!remembers_) return;
         say("A run {}led to it; it has no multipliers, because the memory of M is part of the state.",
             timeless_ ? "" : fmt::format("of {} periods of M ", motion_.maps));
     }
     void describe_stability() {
         if (!motion_.differentiable) {
-            if (!ends_a_run()) say("It has no multipliers: the motion is not smooth here.");
+            if (!remembers_) say("It has no multipliers: the motion is not smooth here.");
             return;
         }
         double largest = 0;
@@ -398,16 +398,22 @@ private:
     }
 
     const SteadyMotion& motion_;
-    bool timeless_;
+    bool timeless_, remembers_;
     const std::vector<std::string>& names_;
 };
+
+/// Returns whether a controller of the question samples or waits, so that the state is more than angles, velocities and
+/// states.
+bool remembers(const SteadyQuestion& question) {
+    return settles_after(question).value_or(0) >= 0;
+}
 
 }  // namespace
 
 std::string description_of(const SteadyQuestion& question, const SteadyMotion& motion, const SteadyShape& shape,
                            const std::vector<OtherMotion>& others) {
     const std::vector<std::string> nobody;
-    SteadyStory story(motion, question.is_timeless(), nobody);
+    SteadyStory story(motion, question.is_timeless(), remembers(question), nobody);
     story.tell(shape, model::has_memory<model::SampledController>(question.drive.M()), question.repeats.period);
     if (motion.is_found()) story.describe_others(others);
     return story.take_text();
@@ -418,7 +424,7 @@ std::string description_of(const SteadyQuestion& question, const SteadyMotion& m
     for (const model::Body& body : question.system->bodies) names.push_back(body.name);
     const auto& loads = question.drive.loads;
     const bool sampled = std::ranges::any_of(loads, model::has_memory<model::SampledController>);
-    SteadyStory story(motion, question.repeats.period == 0, names);
+    SteadyStory story(motion, question.repeats.period == 0, remembers(question), names);
     story.tell({}, sampled, question.repeats.period);
     if (motion.is_found()) story.count_others(others);
     return story.take_text();

@@ -560,7 +560,7 @@ test("a turn exactly at a jump of M has no multipliers", function()
     -- ratio of the torques on both sides of it.
     local P = 2 * math.pi / 1.3
     local function found(k, sign)
-        local M = function(t) return ((t / P) % 1 < 0.5 and 1.9 or -1.9) * sign end
+        local M = function(t) return (t < 0 and error "before the start" or (t / P) % 1 < 0.5 and 1.9 or -1.9) * sign end
         return system { I = 1, C = 0.2, k = k, Rd = 0.2, Re = 0.4 }:steady { M = M, theta0 = -0.2 * sign, velocity0 = -0.1 * sign, omega = 1.3 }
     end
     for _, sign in ipairs { 1, -1 } do
@@ -572,6 +572,16 @@ test("a turn exactly at a jump of M has no multipliers", function()
         local ratio = (torque - 0.2) / (torque + 0.2)
         near(beside.multipliers[1].abs * beside.multipliers[2].abs, math.exp(-0.2 * P) * ratio^2, 1e-4)
     end
+end)
+
+test("a motion under a controller that samples has no multipliers because of its memory, of several bodies too", function()
+    local M = excitation.sampled(function(t, _, v) return math.sin(2 * t) - 0.2 * v.a end, { every = math.pi / 8 })
+    local rig = system { bodies = { a = { I = 1, k = 4, C = 0.1 }, b = { I = 0.5, k = 1, C = 0.2 } }, links = { ab = { "a", "b", k = 2 } } }
+    local s = rig:steady { M = { a = M }, period = math.pi }
+    equal(s.multipliers, nil)
+    local story = s:explain():gsub("%s+", " ")
+    assert(story:find("it has no multipliers, because the memory of M is part of the state", 1, true), story)
+    assert(not story:find("not smooth", 1, true), story)
 end)
 
 test("the end of a decay is not a cycle", function()
