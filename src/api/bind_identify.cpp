@@ -1353,8 +1353,8 @@ constexpr lua::Member fit_members[] = {
       DINAL_FIT "print(math.abs(fit.omega0 - sys.omega0) < 3 * fit.std_error.omega0)  --> true"}},
     {lua::a_value<FitHandle, [](const FitAnswer& fit) { return known_errors(fit, fit.errors_if_right); }>,
      {"fit.error_if_right -> table",
-      "The same if the model is right: friction the same at all speeds, a linear spring, a zero that does not drift. They are "
-      "nil if the residual shows that it is not (fit.misfit).",
+      "The standard errors if the model is right: constant friction, a linear spring, a zero that does not drift. They are "
+      "nil if the residual shows that the model is wrong (fit.misfit).",
       DINAL_FIT "print(fit.error_if_right.zeta < fit.std_error.zeta)  --> true"}},
     {lua::a_value<FitHandle, silent_names>,
      {"fit.silent -> table",
